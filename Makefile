@@ -1,0 +1,111 @@
+# Abut. `make` builds, `make run` shows, `make test` proves; what is missing is installed or named by config/setup.sh.
+# Another compiler: OMPI_CC=clang make. Another PETSc: make PETSC_DIR=... PETSC_ARCH=... Another build folder: make B=... Whole commands: make V=1.
+B        ?= build
+PREFIX   ?= /usr/local
+CFLAGS   ?= -g -O2
+WARNINGS  = -Wall -Wextra -Werror
+export PETSC_DIR PETSC_ARCH P4EST_DIR
+export OMP_NUM_THREADS ?= 1
+ifdef PETSC_DIR
+export PATH := $(PETSC_DIR)/$(PETSC_ARCH)/bin:$(PATH)
+endif
+
+# What config/setup.sh found: CC, PYTHON, PETSC, DEPS_CFLAGS, DEPS_LIBS, CHECK_CFLAGS, CHECK_LIBS. It rewrites the file only when an answer
+# changed, and GNU make then starts again with the new one. Only the goals below may install packages, and only as root on Debian.
+INSTALLING = run test check asan setup
+NO_SETUP   = clean deps deps-dev format lint
+ifneq ($(filter-out $(NO_SETUP),$(or $(MAKECMDGOALS),all)),)
+include $(B)/config.mk
+endif
+$(B)/config.mk: FORCE
+	@config/setup.sh $@ $(if $(filter $(INSTALLING),$(MAKECMDGOALS)),all install,build)
+
+# --- what is built ------------------------------------------------------------------------------------------------------------
+objects  = $(patsubst %.c,$(B)/obj/%.o,$(wildcard $(1)/*.c))
+LIB_OBJ := $(foreach d,$(filter-out src/app,$(patsubst %/,%,$(wildcard src/*/))),$(call objects,$(d)))
+APP_OBJ := $(call objects,src/app)
+PLUGINS := $(filter-out template,$(sort $(patsubst plugins/%/,%,$(dir $(wildcard plugins/*/*.c)))))
+CHECKS  := $(patsubst tests/unit/%.c,$(B)/tests/%,$(wildcard tests/unit/ck_*.c))
+LIB     := $(B)/lib/libabut.so
+ABUT    := $(if $(APP_OBJ),$(B)/bin/abut)
+LINK     = $(say)$(CC) $(CFLAGS) $(LDFLAGS) -Wl,--as-needed
+say      = $(if $(V),,@echo '  $(@:$(B)/%=%)'; )
+RPATH    = -Wl,-rpath,'$$ORIGIN/../lib'
+
+.DEFAULT_GOAL := all
+all: $(LIB) $(PLUGINS:%=$(B)/lib/lib%.so) $(ABUT)
+
+$(LIB): $(LIB_OBJ) | $(B)/lib
+	$(LINK) -shared -Wl,-soname,libabut.so $^ -o $@ $(DEPS_LIBS) -lm -ldl
+
+$(B)/bin/abut: $(APP_OBJ) $(LIB) | $(B)/bin
+	$(LINK) $(APP_OBJ) -o $@ -L$(B)/lib -labut $(RPATH) $(DEPS_LIBS) -lm
+
+# A plugin: every source of plugins/NAME in libNAME.so
+define plugin_rule
+$(B)/lib/lib$(1).so: $(call objects,plugins/$(1)) $(LIB)
+	$$(LINK) -shared $(call objects,plugins/$(1)) -o $$@ -L$(B)/lib -labut -Wl,-rpath,'$$$$ORIGIN' $$(DEPS_LIBS) -lm
+endef
+$(foreach p,$(PLUGINS),$(eval $(call plugin_rule,$(p))))
+
+# A unit test: tests/unit/ck_TOPIC.c; one that begins ck_NAME also sees the inside of the plugin estimator_NAME
+inside   = $(foreach p,$(PLUGINS),$(if $(filter ck_$(lastword $(subst _, ,$(p)))%,$(1)),$(call objects,plugins/$(p))))
+define check_rule
+$(B)/tests/$(1): $(B)/obj/tests/unit/$(1).o $(call inside,$(1)) $(LIB) | $(B)/tests
+	$$(LINK) $$(filter %.o,$$^) -o $$@ -L$(B)/lib -labut $$(RPATH) $$(DEPS_LIBS) $$(CHECK_LIBS) -lm
+endef
+$(foreach t,$(CHECKS),$(eval $(call check_rule,$(notdir $(t)))))
+
+$(B)/obj/tests/%.o: CPPFLAGS += $(PLUGINS:%=-Iplugins/%) $(CHECK_CFLAGS)
+$(B)/obj/%.o: %.c $(B)/config.mk
+	@mkdir -p $(@D)
+	$(say)$(CC) -std=gnu99 $(WARNINGS) $(CFLAGS) -fPIC -MMD -MP -Iinclude $(CPPFLAGS) $(DEPS_CFLAGS) -c $< -o $@
+-include $(shell test -d $(B)/obj && find $(B)/obj -name '*.d')
+$(B)/bin $(B)/lib $(B)/tests:
+	@mkdir -p $@
+
+# --- what is done with it -----------------------------------------------------------------------------------------------------
+LAYERS = -options_file examples/layers/layers.yml -record out/layers.record -record_csv out/layers.csv \
+         -output out/layers.xdmf -output_profile out/layers_profile.csv
+run: all
+	@mkdir -p out
+	$(B)/bin/abut $(LAYERS)
+	@$(PYTHON) examples/layers/compare.py out
+	@$(PYTHON) examples/layers/plot.py out
+
+# make test T=layers runs what has "layers" in its name
+test: all $(CHECKS)
+	@$(PYTHON) tests/run.py --build $(B) $(T)
+check: all $(CHECKS)
+	@$(PYTHON) tests/run.py --build $(B) --quick $(T)
+asan: # leaks are looked for by the tests themselves (-malloc_dump): the leak checker reports 122 kB of Open MPI
+	ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=halt_on_error=1 $(MAKE) B=$(B)/asan CFLAGS="-g -O1 -fno-omit-frame-pointer -fsanitize=address,undefined" test
+
+setup: ; @:
+deps:
+	@tests/deps.sh
+deps-dev:
+	@config/setup.sh "" contribute install
+CLANG_FORMAT ?= $(or $(wildcard .venv/bin/clang-format),clang-format)
+SOURCES       = $(shell find include src plugins tests -name '*.[ch]')
+format:
+	$(CLANG_FORMAT) -i $(SOURCES)
+lint:
+	$(CLANG_FORMAT) --dry-run -Werror $(SOURCES)
+	@! grep -nE '.{141,}' $(SOURCES)
+
+install: all
+	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib/pkgconfig $(DESTDIR)$(PREFIX)/include/abut/private
+	install -m 755 $(ABUT) $(DESTDIR)$(PREFIX)/bin
+	install -m 755 $(B)/lib/*.so $(DESTDIR)$(PREFIX)/lib
+	install -m 644 include/*.h $(DESTDIR)$(PREFIX)/include
+	install -m 644 include/abut/private/*.h $(DESTDIR)$(PREFIX)/include/abut/private
+	printf '%s\n' 'prefix=$(PREFIX)' 'Name: abut' 'Description: Unilateral contact with adaptive meshes on PETSc' 'Version: $(VERSION)' \
+	  'Requires: $(PETSC)' 'Cflags: -I$${prefix}/include' 'Libs: -L$${prefix}/lib -labut' > $(DESTDIR)$(PREFIX)/lib/pkgconfig/abut.pc
+VERSION = $(shell sed -n 's/^version: *//p' CITATION.cff)
+
+clean:
+	rm -rf $(B) out
+FORCE:
+.PHONY: all run test check asan setup deps deps-dev format lint install clean FORCE
+.DELETE_ON_ERROR:

@@ -1,0 +1,4 @@
+#pragma once
+
+/* Everything Abut offers */
+#include <abutscene.h>

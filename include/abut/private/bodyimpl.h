@@ -1,0 +1,58 @@
+#pragma once
+
+#include <abutbody.h>
+#include <petsc/private/petscimpl.h>
+#include <petsctime.h>
+
+#define ABUT_MAX_SIDES 64
+
+/* What the scene says about one component of one side */
+typedef struct {
+  AbutConditionType type;
+  AbutExpression    value; /* NULL: zero traction */
+} AbutCondition;
+
+struct _p_AbutBody {
+  PETSCHEADER(int);
+  AbutMesh      mesh;
+  PetscReal     young, poisson, lambda, mu;
+  AbutCondition condition[ABUT_MAX_SIDES][2];
+
+  /* of the present mesh */
+  PetscInt      generation;  /* of the mesh for which the rest was made, -1 if it is to be made anew */
+  Mat           A;           /* stiffness, rows and columns of prescribed unknowns replaced by mu on the diagonal */
+  Mat           Ac;          /* rows of the stiffness at the prescribed unknowns: for the lift and the reactions */
+  IS            constrained; /* owned prescribed unknowns, global numbers */
+  Vec           prescribed;  /* their values, laid out like the rows of Ac */
+  Vec           load, lift;  /* nodal forces of the tractions; -Ac^T times the prescribed values */
+  Vec           contact;     /* nodal contact forces of the last solve */
+  Vec           rhs, u;      /* u has ghost values */
+  PetscReal    *vertexu;     /* [2*nvertices] displacement at all local vertices, hanging ones too */
+  AbutBoundary *boundary;    /* skeleton: contours, nodes, sides; no values */
+  PetscInt     *boundaryglobal; /* [n] global vertex numbers of its nodes */
+  VecScatter    toboundary;  /* from a vector of unknowns to [2*n] values on every rank */
+  Vec           onboundary;
+  AbutSide      side[ABUT_MAX_SIDES];
+
+  KSP           ksp;
+  PetscBool     userksp;     /* the user chose the solver: size does not */
+  PetscInt      solves, iterations;
+  PetscReal     assemblytime;
+  PetscInt      assemblycells;
+};
+
+PETSC_INTERN PetscErrorCode AbutBodySetConditionsFromOptions_Private(AbutBody, AbutOptionItems);
+PETSC_INTERN PetscErrorCode AbutBodyConditionsSetUp_Private(AbutBody);
+PETSC_INTERN PetscErrorCode AbutBodyCheckHeld_Private(AbutBody);
+PETSC_INTERN PetscErrorCode AbutBodyEdgeMoments_Private(AbutBody, PetscInt, PetscInt, const PetscReal[2], const PetscReal[2], PetscReal[2]);
+PETSC_INTERN PetscErrorCode AbutBodyAssemble_Private(AbutBody);
+PETSC_INTERN PetscErrorCode AbutCellStiffness_Private(AbutBody, PetscInt, PetscReal[64]);
+PETSC_INTERN PetscErrorCode AbutBodyCreateSolver_Private(AbutBody);
+PETSC_INTERN PetscErrorCode AbutBodyChooseSolver_Private(AbutBody, PetscInt, PetscBool);
+PETSC_INTERN PetscErrorCode AbutBodyReset_Private(AbutBody);
+PETSC_INTERN PetscErrorCode AbutBodyBoundarySetUp_Private(AbutBody);
+PETSC_INTERN PetscErrorCode AbutBodyBoundaryReset_Private(AbutBody);
+PETSC_INTERN PetscErrorCode AbutBodyGatherBoundary_Private(AbutBody, Vec, const PetscReal *[]);
+PETSC_INTERN PetscErrorCode AbutBodyCreateReaction_Private(AbutBody, Vec *);
+PETSC_INTERN PetscErrorCode AbutBodyUngatherBoundary_Private(AbutBody, const PetscReal *[]);
+PETSC_EXTERN PetscLogEvent  ABUTBODY_Assemble, ABUTBODY_Solve;

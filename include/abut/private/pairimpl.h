@@ -1,0 +1,41 @@
+#pragma once
+
+#include <abutpair.h>
+#include <petsc/private/petscimpl.h>
+
+typedef enum {
+  ABUT_PRESSURE_FIRST,
+  ABUT_PRESSURE_SECOND,
+  ABUT_PRESSURE_FINER
+} AbutPressureSide;
+
+/* A piece of the common refinement: one element of each side, and M[s][i][k] = integral of psi_i phi_k, psi_i the dual function of node i of the pressure
+   side's element, phi_k the hat function of node k of the element of side s: s = 0 the pressure side, s = 1 the other one */
+typedef struct {
+  PetscInt  element[2];
+  PetscReal M[2][2][2];
+} AbutSegment;
+
+struct _p_AbutPair {
+  PETSCHEADER(int);
+  AbutBody         body[2];
+  PetscInt         side[2];
+  AbutExpression   gap;      /* NULL: the distance of the sides */
+  PetscReal        penalty, theta, height;
+  PetscBool        thetaset;
+  AbutPressureSide pressureside;
+
+  /* of the present meshes */
+  PetscInt        generation[2];
+  PetscInt        which;    /* the side that carries the pressures */
+  PetscInt        n[2];     /* nodes of both sides */
+  PetscInt        nsegments;
+  AbutSegment    *segment;
+  PetscReal      *D, *F;    /* [n[which]] integrals of psi_i and of psi_i times the gap; D = 0: the node carries no pressure */
+  PetscReal      *work;     /* [n[which]] */
+  const AbutSide *nodes[2];
+};
+
+PETSC_INTERN PetscErrorCode AbutPairMortar_Private(AbutPair);
+PETSC_INTERN PetscErrorCode AbutPairMortarReset_Private(AbutPair);
+PETSC_INTERN PetscErrorCode AbutPairPenetration_Private(AbutPair, const PetscReal *const[2], PetscReal[]);

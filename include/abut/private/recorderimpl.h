@@ -1,0 +1,71 @@
+#pragma once
+
+#include <abutrecorder.h>
+#include <petsc/private/petscimpl.h>
+#include <stdio.h>
+
+/* The fields of one body, numbered over all ranks: row g of a vertex field is the vertex with global number g, hanging vertices follow.
+   A hanging vertex on a cut between ranks has a row for each of them. */
+typedef struct {
+  PetscInt nvertices, ncells; /* over all ranks */
+  PetscInt corners;
+  Vec      vertices;     /* [2 per vertex] coordinates */
+  Vec      displacement; /* [2 per vertex] */
+  IS       cells;        /* [corners per cell] rows of the vertices, counter-clockwise */
+  Vec      stress;       /* [4 per cell] s11, s22, s33, s12 at the centre */
+  Vec      von_mises;    /* [cell] of that stress */
+  Vec      level;        /* [cell] refinement level */
+  Vec      eta;          /* [cell] error indicator, NULL where none was estimated */
+} AbutFields;
+
+PETSC_INTERN PetscErrorCode AbutFieldsCreate_Private(AbutBody, Vec, AbutFields *);
+PETSC_INTERN PetscErrorCode AbutFieldsDestroy_Private(AbutFields *);
+
+/* What the index files (.xdmf, .pvd) say of one body in one cycle */
+typedef struct {
+  PetscInt  cycle;
+  char     *body;
+  PetscInt  nvertices, ncells, corners;
+  PetscBool has_eta;
+} AbutRecorderPart;
+
+/* One row of the CSV: the values of the first n keys */
+typedef struct {
+  PetscInt n;
+  char   **value;
+} AbutRecorderRow;
+
+/* How fields are written; all NULL without -output */
+struct _AbutRecorderOps {
+  PetscErrorCode (*begincycle)(AbutRecorder);
+  PetscErrorCode (*writepart)(AbutRecorder, const AbutRecorderPart *, const AbutFields *); /* one body */
+  PetscErrorCode (*endcycle)(AbutRecorder);
+};
+
+struct _p_AbutRecorder {
+  PETSCHEADER(struct _AbutRecorderOps);
+  char *record_file, *csv_file, *output_file, *profile_file; /* NULL: not asked for */
+  char *output;                                              /* output_file without its extension */
+
+  PetscInt nkeys, maxkeys;
+  char   **key, **value; /* [nkeys] in order of first appearance */
+
+  PetscInt         nrows, maxrows;
+  AbutRecorderRow *row; /* [nrows] one per cycle, kept for the CSV only */
+
+  PetscInt          nparts, maxparts;
+  AbutRecorderPart *part;   /* [nparts] all bodies of all cycles written so far */
+  PetscViewer       viewer; /* of the HDF5 file, open while a cycle is being written */
+};
+
+PETSC_INTERN PetscLogEvent ABUTRECORDER_WriteFields;
+
+PETSC_INTERN PetscErrorCode AbutRecorderCreate_XDMF(AbutRecorder);
+PETSC_INTERN PetscErrorCode AbutRecorderCreate_VTU(AbutRecorder);
+
+/* Files are written by rank 0 as PATH.part and renamed to PATH; what goes wrong there is an error on all ranks */
+typedef void (*AbutFileWriter)(FILE *, const void *ctx);
+PETSC_INTERN PetscErrorCode AbutFileCheckPath_Private(MPI_Comm, const char key[], const char path[]);
+PETSC_INTERN PetscErrorCode AbutFileWrite_Private(MPI_Comm, const char path[], AbutFileWriter, const void *ctx);
+PETSC_INTERN PetscErrorCode AbutFileCopyAside_Private(MPI_Comm, const char path[]);
+PETSC_INTERN PetscErrorCode AbutFileRename_Private(MPI_Comm, const char path[]);

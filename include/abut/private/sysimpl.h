@@ -1,0 +1,4 @@
+#pragma once
+
+#include <abutsys.h>
+#include <petsc/private/petscimpl.h>

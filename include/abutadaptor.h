@@ -1,0 +1,28 @@
+#pragma once
+
+#include <abutestimator.h>
+
+/*S
+   AbutAdaptor - From one number per cell to marks, and to a new mesh: threshold (27), caps on level and unknowns
+
+   Level: intermediate
+
+.seealso: `AbutAdaptorCreate()`, `AbutEstimator`, `AbutMeshAdapt()`
+S*/
+typedef struct _p_AbutAdaptor *AbutAdaptor;
+#define ABUTADAPTORTHRESHOLD "threshold"
+
+typedef enum {
+  ABUT_ADAPT_DONE,    /* no cell is above the threshold */
+  ABUT_ADAPT_REFINED, /* cells are marked for refinement */
+  ABUT_ADAPT_LEVEL,   /* every cell above the threshold is at -adaptor_max_level */
+  ABUT_ADAPT_UNKNOWNS /* refining would pass -adaptor_max_unknowns */
+} AbutAdaptVerdict;
+
+PETSC_EXTERN PetscClassId   ABUTADAPTOR_CLASSID;
+PETSC_EXTERN PetscErrorCode AbutAdaptorCreate(MPI_Comm, AbutAdaptor *);
+PETSC_EXTERN PetscErrorCode AbutAdaptorSetFromOptions(AbutAdaptor);
+PETSC_EXTERN PetscErrorCode AbutAdaptorGetBodies(AbutAdaptor, PetscInt *, const char *const *[]);
+PETSC_EXTERN PetscErrorCode AbutAdaptorMark(AbutAdaptor, AbutBody, Vec, PetscBool[], PetscInt *, AbutAdaptVerdict *);
+PETSC_EXTERN PetscErrorCode AbutAdaptorView(AbutAdaptor, PetscViewer);
+PETSC_EXTERN PetscErrorCode AbutAdaptorDestroy(AbutAdaptor *);

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <abutbody.h>
+
+/*S
+   AbutPair - One possible contact of two sides of two bodies: gap, common refinement, dual-mortar weights, penalty law, KKT residuals
+
+   Level: intermediate
+
+   Notes:
+   Contact conditions (7)-(10) of the paper in the penalty form (15)-(16): p = max(0, u_n1 + u_n2 - f)/theta. Pressures are nodal values on one of
+   the sides (`-mid_pair_pressure_side`), tested with the biorthogonal (dual) basis; all integrals are taken on the common refinement of both sides.
+
+.seealso: `AbutPairCreate()`, `AbutBody`, `AbutInterface`
+S*/
+typedef struct _p_AbutPair *AbutPair;
+
+/* The state of a pair for given traces; the same on all ranks. Forces per unit thickness (stress times length), lengths in the scene's unit */
+typedef struct {
+  PetscReal force;           /* integral of p */
+  PetscReal pressure_max, pressure_min;
+  PetscReal contact_length;  /* sum of the nodal lengths D_i over active nodes */
+  PetscReal contact_edge;    /* where the penetration changes sign, along the side from its first closed end; the half-width in a symmetric half model */
+  PetscReal penetration_max; /* of the averaged nodal penetration */
+  PetscReal complementarity; /* max_i p_i*|p_i*theta - penetration_i| over the largest p*penetration */
+  PetscReal balance;         /* |sum of forces on both sides| / force */
+  PetscReal energy;          /* J_theta, eq. (15) */
+  PetscInt  active, nodes;
+} AbutPairState;
+
+PETSC_EXTERN PetscClassId   ABUTPAIR_CLASSID;
+PETSC_EXTERN PetscErrorCode AbutPairCreate(MPI_Comm, const char[], AbutPair *);
+PETSC_EXTERN PetscErrorCode AbutPairSetFromOptions(AbutPair, PetscInt, AbutBody[]);
+PETSC_EXTERN PetscErrorCode AbutPairSetUp(AbutPair);
+PETSC_EXTERN PetscErrorCode AbutPairView(AbutPair, PetscViewer);
+PETSC_EXTERN PetscErrorCode AbutPairDestroy(AbutPair *);
+PETSC_EXTERN PetscErrorCode AbutPairGetName(AbutPair, const char *[]);
+PETSC_EXTERN PetscErrorCode AbutPairGetBodies(AbutPair, AbutBody[2], PetscInt[2]);
+PETSC_EXTERN PetscErrorCode AbutPairGetTheta(AbutPair, PetscReal *);
+PETSC_EXTERN PetscErrorCode AbutPairGetCompliance(AbutPair, PetscReal[2]);
+PETSC_EXTERN PetscErrorCode AbutPairGetSizes(AbutPair, PetscInt[2]);
+
+/* Traces u_n1, u_n2 at the nodes of the two sides (as ordered in AbutSide) -> nodal pressures; nodal pressures -> nodal normal forces on both sides */
+PETSC_EXTERN PetscErrorCode AbutPairComputePressure(AbutPair, const PetscReal[], const PetscReal[], PetscReal[]);
+PETSC_EXTERN PetscErrorCode AbutPairComputeForce(AbutPair, const PetscReal[], PetscReal[], PetscReal[]);
+PETSC_EXTERN PetscErrorCode AbutPairComputeWinkler(AbutPair, PetscReal[], PetscReal[], PetscBool *);
+PETSC_EXTERN PetscErrorCode AbutPairGetGap(AbutPair, const PetscReal[2], PetscReal *);
+PETSC_EXTERN PetscErrorCode AbutPairGetPressureNodes(AbutPair, PetscInt *, PetscInt *, const PetscReal *[], const PetscReal *[]);
+PETSC_EXTERN PetscErrorCode AbutPairGetState(AbutPair, const PetscReal[], const PetscReal[], const PetscReal[], AbutPairState *);

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <petscsys.h>
+#include <abut/private/abutretro.h>
+
+PETSC_EXTERN PetscErrorCode AbutInitialize(int *, char ***, const char[]);
+PETSC_EXTERN PetscErrorCode AbutFinalize(void);
+
+/* Bad input: one line saying which key or file, what is wrong and what would be right; `abut` prints just that and exits with 1.
+   Raised by every rank of the communicator, or by none. */
+#define AbutCheckInput(cond, comm, ...) PetscCheck(cond, comm, PETSC_ERR_USER_INPUT, __VA_ARGS__)
+
+/* Typed readers of one key: like PetscOptionsReal() and its sisters, but a bad value names its key.
+   To be called between PetscObjectOptionsBegin() and PetscOptionsEnd(), so that -help lists the key. */
+PETSC_EXTERN PetscErrorCode AbutOptionsReal(AbutOptionItems, const char[], const char[], PetscReal *, PetscBool *);
+PETSC_EXTERN PetscErrorCode AbutOptionsInt(AbutOptionItems, const char[], const char[], PetscInt *, PetscBool *);
+PETSC_EXTERN PetscErrorCode AbutOptionsBool(AbutOptionItems, const char[], const char[], PetscBool *, PetscBool *);
+PETSC_EXTERN PetscErrorCode AbutOptionsString(AbutOptionItems, const char[], const char[], char[], size_t, PetscBool *);
+PETSC_EXTERN PetscErrorCode AbutOptionsEnum(AbutOptionItems, const char[], const char[], const char *const[], PetscInt *, PetscBool *);
+PETSC_EXTERN PetscErrorCode AbutOptionsReals(AbutOptionItems, const char[], const char[], PetscInt, PetscReal[], PetscBool *);
+PETSC_EXTERN PetscErrorCode AbutOptionsInts(AbutOptionItems, const char[], const char[], PetscInt, PetscInt[], PetscBool *);
+PETSC_EXTERN PetscErrorCode AbutOptionsCheckAllRead(MPI_Comm, PetscBool);
+
+/*S
+   AbutExpression - A scalar function of the point (x, y): a number, a formula, a CSV file of points or a C function
+
+   Level: beginner
+
+   Notes:
+   A formula is parsed by muParser, whose library is opened when the first formula of a scene is met.
+   A CSV file has lines `x,y,value`; the value at a point is interpolated linearly along the polyline of its points.
+
+.seealso: `AbutExpressionCreate()`, `AbutExpressionEvaluate()`
+S*/
+typedef struct _n_AbutExpression *AbutExpression;
+typedef PetscErrorCode (*AbutPointFunction)(const PetscReal x[2], PetscReal *value, void *ctx);
+PETSC_EXTERN PetscErrorCode AbutExpressionCreate(MPI_Comm, const char[], const char[], AbutExpression *);
+PETSC_EXTERN PetscErrorCode AbutExpressionCreateFunction(AbutPointFunction, void *, AbutExpression *);
+PETSC_EXTERN PetscErrorCode AbutExpressionEvaluate(AbutExpression, const PetscReal[2], PetscReal *);
+PETSC_EXTERN PetscErrorCode AbutExpressionGetText(AbutExpression, const char *[]);
+PETSC_EXTERN PetscErrorCode AbutExpressionDestroy(AbutExpression *);
+
+PETSC_EXTERN PetscErrorCode AbutPluginAppend(MPI_Comm, const char[]);
+PETSC_EXTERN PetscErrorCode AbutPluginLoad(MPI_Comm, const char[], const char[], PetscBool *);
+PETSC_EXTERN PetscErrorCode AbutPluginListAvailable(const char[], char[], size_t);

@@ -1,0 +1,35 @@
+#include "fembemimpl.h"
+
+static inline PetscComplex PointAt(const PetscReal x[], PetscInt i)
+{
+  return PetscCMPLX(x[2 * i], x[2 * i + 1]);
+}
+
+/* Takes over a boundary, which must outlive the copy; tractions that are not given are zero until recovered or solved for */
+PetscErrorCode FembemBoundaryCreate(MPI_Comm comm, const AbutBoundary *given, PetscReal young, PetscReal poisson, FembemBoundary *b)
+{
+  PetscFunctionBegin;
+  AbutCheckInput(poisson < 0.5, comm, "estimator_type: fembem needs a Poisson's ratio below 0.5, not %g; use zz", (double)poisson);
+  b->comm      = comm;
+  b->given     = given;
+  b->n         = given->n;
+  b->young     = young;
+  b->mat.mu    = young / (2. * (1. + poisson));
+  b->mat.kappa = 3. - 4. * poisson;
+  b->next      = given->end;
+  PetscCall(PetscMalloc4(b->n, &b->previous, b->n, &b->z, b->n, &b->u, 2 * b->n, &b->t));
+  for (PetscInt i = 0; i < b->n; ++i) {
+    b->previous[b->next[i]] = i;
+    b->z[i]                 = PointAt(given->x, i);
+    b->u[i]                 = PointAt(given->u, i);
+  }
+  for (PetscInt i = 0; i < 2 * b->n; ++i) b->t[i] = PointAt(given->traction, i);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode FembemBoundaryDestroy(FembemBoundary *b)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree4(b->previous, b->z, b->u, b->t));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

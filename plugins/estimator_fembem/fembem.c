@@ -1,0 +1,144 @@
+#include <abutestimator.h>
+#include "fembemimpl.h"
+
+/*
+   The estimator of the paper, eqs. (22)-(27): the stress of the finite elements against that of boundary elements on the trace of their
+   mesh, eqs. (25) and (26). The boundary elements see the same data as the last solve of the body, eq. (20): given tractions as the load
+   projected on the boundary elements, contact as nodal forces, supports as displacements.
+   Limits: one homogeneous material, Poisson's ratio below 1/2, no body forces; boundary elements of order 1.
+*/
+typedef enum {
+  FEMBEM_GALERKIN,
+  FEMBEM_NONE
+} FembemSolve;
+static const char *const FembemSolves[] = {"galerkin", "none", NULL};
+
+typedef struct {
+  PetscInt     solve; /* FembemSolve */
+  PetscReal    tolerance;
+  PetscInt     max_elements;
+  FembemStress stress; /* during an estimate */
+} Fembem;
+
+static PetscErrorCode FembemCompare(AbutEstimator est, PETSC_UNUSED AbutBody body, PETSC_UNUSED PetscInt c, PetscInt n,
+                                    PETSC_UNUSED const PetscReal xi[], const PetscReal x[], PetscReal s[])
+{
+  Fembem *fembem;
+
+  PetscFunctionBegin;
+  PetscCall(AbutEstimatorGetData(est, &fembem));
+  PetscCall(FembemStressEvaluate(fembem->stress, n, x, s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The boundary is small beside the body: every rank holds all of it, solves for it, and evaluates the stress in its own cells */
+static PetscErrorCode AbutEstimatorEstimate_Fembem(AbutEstimator est, AbutBody body, PetscReal eta[])
+{
+  MPI_Comm       comm = PetscObjectComm((PetscObject)est);
+  Fembem        *fembem;
+  AbutBoundary  *given;
+  FembemBoundary boundary;
+  PetscReal      young, poisson;
+  PetscInt       unknowns = 0;
+
+  PetscFunctionBegin;
+  PetscCall(AbutEstimatorGetData(est, &fembem));
+  PetscCall(AbutBodyGetMaterial(body, &young, &poisson));
+  PetscCall(AbutBodyGetBoundary(body, &given));
+  PetscCall(FembemBoundaryCreate(comm, given, young, poisson, &boundary));
+  PetscCall(FembemRecoverTractions(&boundary));
+  if (fembem->solve == FEMBEM_GALERKIN) {
+    AbutCheckInput(given->n <= fembem->max_elements, comm,
+                   "estimator_fembem_max_elements: %" PetscInt_FMT " boundary elements are more than %" PetscInt_FMT
+                   "; raise it (memory and time grow with the square and the cube), or give -estimator_fembem_solve none",
+                   given->n, fembem->max_elements);
+    PetscCall(FembemSolveGalerkin(&boundary, &unknowns));
+  }
+  PetscCall(AbutEstimatorSetUnknowns(est, unknowns));
+  PetscCall(FembemStressCreate(&boundary, fembem->tolerance, &fembem->stress));
+  PetscCall(AbutEstimatorCompareStress(est, body, FembemCompare, eta));
+  PetscCall(FembemStressDestroy(&fembem->stress));
+  PetscCall(FembemBoundaryDestroy(&boundary));
+  PetscCall(AbutBoundaryDestroy(&given));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutEstimatorSetFromOptions_Fembem(AbutEstimator est, AbutOptionItems PetscOptionsObject)
+{
+  MPI_Comm comm = PetscObjectComm((PetscObject)est);
+  Fembem  *fembem;
+
+  PetscFunctionBegin;
+  PetscCall(AbutEstimatorGetData(est, &fembem));
+  PetscCall(AbutOptionsEnum(PetscOptionsObject, "-estimator_fembem_solve",
+                            "galerkin: boundary elements solved for; none: displacements and reactions of the finite elements",
+                            FembemSolves, &fembem->solve, NULL));
+  PetscCall(AbutOptionsReal(PetscOptionsObject, "-estimator_fembem_tree_tolerance",
+                            "relative error of the treecode for stresses; 0 sums directly", &fembem->tolerance, NULL));
+  PetscCall(AbutOptionsInt(PetscOptionsObject, "-estimator_fembem_max_elements",
+                           "boundary elements up to which galerkin's dense system is solved", &fembem->max_elements, NULL));
+  AbutCheckInput(fembem->tolerance >= 0. && fembem->tolerance < 0.1, comm,
+                 "estimator_fembem_tree_tolerance: %g is not in [0, 0.1); 1e-4 is ample", (double)fembem->tolerance);
+  AbutCheckInput(fembem->max_elements > 0, comm, "estimator_fembem_max_elements: %" PetscInt_FMT " is not positive", fembem->max_elements);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutEstimatorView_Fembem(AbutEstimator est, PetscViewer viewer)
+{
+  Fembem *fembem;
+
+  PetscFunctionBegin;
+  PetscCall(AbutEstimatorGetData(est, &fembem));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  boundary elements: solve %s (up to %" PetscInt_FMT "), treecode tolerance %g\n",
+                                   FembemSolves[fembem->solve], fembem->max_elements, (double)fembem->tolerance));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutEstimatorDestroy_Fembem(AbutEstimator est)
+{
+  Fembem *fembem;
+
+  PetscFunctionBegin;
+  PetscCall(AbutEstimatorGetData(est, &fembem));
+  PetscCall(PetscFree(fembem));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutEstimatorCreate_Fembem(AbutEstimator est)
+{
+  const AbutEstimatorOps ops = {.estimate       = AbutEstimatorEstimate_Fembem,
+                                .setfromoptions = AbutEstimatorSetFromOptions_Fembem,
+                                .view           = AbutEstimatorView_Fembem,
+                                .destroy        = AbutEstimatorDestroy_Fembem};
+  Fembem                *fembem;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&fembem));
+  fembem->solve        = FEMBEM_GALERKIN;
+  fembem->tolerance    = 1e-4;
+  fembem->max_elements = 4000;
+  PetscCall(AbutEstimatorSetData(est, fembem));
+  PetscCall(AbutEstimatorSetOps(est, &ops));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   PetscDLLibraryRegister_estimator_fembem - Registers `ABUTESTIMATORFEMBEM`; called when the plugin is opened
+
+   Not Collective
+
+   Options Database Keys:
++  -estimator_fembem_solve <galerkin>       - `galerkin` solves the boundary elements' problem; `none` takes u and t of the finite elements
+.  -estimator_fembem_tree_tolerance <1e-4>  - relative error of the treecode that evaluates stresses; 0 sums directly
+-  -estimator_fembem_max_elements <4000>    - boundary elements up to which the dense system of `galerkin` is solved
+
+   Level: developer
+
+.seealso: `AbutEstimatorRegister()`, `AbutEstimatorCompareStress()`
+@*/
+PETSC_EXTERN PetscErrorCode PetscDLLibraryRegister_estimator_fembem(void)
+{
+  PetscFunctionBegin;
+  PetscCall(AbutEstimatorRegister(ABUTESTIMATORFEMBEM, AbutEstimatorCreate_Fembem));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

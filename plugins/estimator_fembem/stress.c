@@ -1,0 +1,61 @@
+#include "fembemimpl.h"
+
+/* From this many elements on the treecode is clearly quicker than the direct sum (at 80 elements 1.3 against 3.9 microseconds a point) */
+#define FEMBEM_TREE_FROM 64
+
+struct _n_FembemStress {
+  PetscInt      n;
+  FembemSource *source;
+  FembemTree    tree; /* NULL: direct sum */
+  PetscReal     kappa;
+};
+
+/* tolerance 0 asks for the direct sum */
+PetscErrorCode FembemStressCreate(const FembemBoundary *b, PetscReal tolerance, FembemStress *stress)
+{
+  FembemStress s;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&s));
+  s->n     = b->n;
+  s->kappa = b->mat.kappa;
+  PetscCall(PetscMalloc1(b->n, &s->source));
+  for (PetscInt i = 0; i < b->n; ++i) {
+    const PetscInt j = b->next[i];
+
+    FembemSourceSet(&s->source[i], b->z[i], b->z[j], b->u[i], b->u[j], b->t[2 * i], b->t[2 * i + 1], b->mat);
+  }
+  if (tolerance > 0. && b->n >= FEMBEM_TREE_FROM) PetscCall(FembemTreeCreate(b->n, s->source, tolerance, &s->tree));
+  *stress = s;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* s[3*n] = (s11, s22, s12) at x[2*n]: inside the body the stress, outside zero; s11 + s22 = 4 Re phi' */
+PetscErrorCode FembemStressEvaluate(FembemStress stress, PetscInt n, const PetscReal x[], PetscReal s[])
+{
+  const PetscReal f = 1. / (2. * PETSC_PI * (1. + stress->kappa)); /* the sums are to be multiplied by f/i */
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < n; ++k) {
+    const PetscComplex z   = PetscCMPLX(x[2 * k], x[2 * k + 1]);
+    PetscComplex       phi = 0., S = 0.;
+
+    if (stress->tree) FembemTreeAdd(stress->tree, z, &phi, &S);
+    else
+      for (PetscInt i = 0; i < stress->n; ++i) FembemSourceAdd(&stress->source[i], z, &phi, &S);
+    s[3 * k]     = f * (2. * PetscImaginaryPartComplex(phi) - PetscImaginaryPartComplex(S));
+    s[3 * k + 1] = f * (2. * PetscImaginaryPartComplex(phi) + PetscImaginaryPartComplex(S));
+    s[3 * k + 2] = -f * PetscRealPartComplex(S);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode FembemStressDestroy(FembemStress *stress)
+{
+  PetscFunctionBegin;
+  if (!*stress) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FembemTreeDestroy(&(*stress)->tree));
+  PetscCall(PetscFree((*stress)->source));
+  PetscCall(PetscFree(*stress));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,33 @@
+#include <abut.h>
+
+static char help[] = "Unilateral contact of elastic bodies with adaptive meshes.\n\
+  abut SCENE [-options]          for example: abut examples/layers/layers.yml -snes_monitor\n\
+Exit status: 0 converged and consistent, 1 bad input, 2 not converged, 3 a limit was reached.\n\n";
+
+static PetscErrorCode AbutRun(PetscInt *status)
+{
+  AbutScene scene;
+
+  PetscFunctionBegin;
+  PetscCall(AbutSceneCreate(PETSC_COMM_WORLD, &scene));
+  PetscCall(AbutSceneSetFromOptions(scene));
+  PetscCall(AbutSceneSetUp(scene));
+  PetscCall(AbutSceneSolve(scene));
+  PetscCall(AbutSceneGetExitStatus(scene, status));
+  PetscCall(AbutSceneDestroy(&scene));
+  PetscCall(AbutOptionsCheckAllRead(PETSC_COMM_WORLD, PETSC_TRUE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+int main(int argc, char **argv)
+{
+  PetscInt       status = 1;
+  PetscErrorCode ierr;
+
+  /* no PetscCall() here: in main() it would end a bad input with an abort and its noise instead of one line */
+  ierr = AbutInitialize(&argc, &argv, help);
+  if (!ierr) ierr = AbutRun(&status);
+  if (ierr && ierr != PETSC_ERR_USER_INPUT) MPI_Abort(MPI_COMM_WORLD, 70);
+  if (AbutFinalize()) return 70;
+  return ierr ? 1 : (int)status;
+}

@@ -1,0 +1,440 @@
+#include <abut/private/bodyimpl.h> /*I "abutbody.h" I*/
+
+PetscClassId  ABUTBODY_CLASSID;
+PetscLogEvent ABUTBODY_Assemble, ABUTBODY_Solve;
+
+static PetscErrorCode AbutBodyInitializePackage_Private(void)
+{
+  PetscFunctionBegin;
+  if (ABUTBODY_CLASSID) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscClassIdRegister("Abut Body", &ABUTBODY_CLASSID));
+  PetscCall(PetscLogEventRegister("AbutBodyAssemble", ABUTBODY_CLASSID, &ABUTBODY_Assemble));
+  PetscCall(PetscLogEventRegister("AbutBodySolve", ABUTBODY_CLASSID, &ABUTBODY_Solve));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutBodyCreate - Creates a body
+
+   Collective
+
+   Input Parameters:
++  comm - the communicator
+-  name - its name; its keys begin with it: `-lower_mesh_box`
+
+   Output Parameter:
+.  body - the body
+
+   Options Database Keys:
++  -NAME_mesh_*              - see `AbutMeshCreate()`
+.  -NAME_material_young <E>  - Young's modulus, > 0, in the stress unit of the scene
+.  -NAME_material_poisson <nu> - Poisson's ratio, -1 < nu < 0.5
+.  -NAME_bc_SIDE_u1|u2 <g>   - prescribed displacement of a side, per component: number, formula in x and y, or CSV file
+.  -NAME_bc_SIDE_t1|t2 <g>   - prescribed traction of a side, per component
+-  -NAME_ksp_*, -NAME_pc_*   - the linear solver; unless given, a direct factor up to 1e6 unknowns, above it CG with BoomerAMG
+
+   Level: beginner
+
+   Note:
+   Limits: plane strain, linear isotropic material, small displacements, order 1; a body that nothing holds is refused.
+
+.seealso: `AbutBodySetFromOptions()`, `AbutBodySolve()`, `AbutBodyDestroy()`
+@*/
+PetscErrorCode AbutBodyCreate(MPI_Comm comm, const char name[], AbutBody *body)
+{
+  char prefix[128];
+
+  PetscFunctionBegin;
+  PetscAssertPointer(body, 3);
+  PetscCall(AbutBodyInitializePackage_Private());
+  PetscCall(PetscHeaderCreate(*body, ABUTBODY_CLASSID, "AbutBody", "Elastic body", "Body", comm, AbutBodyDestroy, AbutBodyView));
+  PetscCall(PetscObjectSetName((PetscObject)*body, name));
+  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", name));
+  PetscCall(PetscObjectSetOptionsPrefix((PetscObject)*body, prefix));
+  (*body)->generation = -1;
+  PetscCall(AbutMeshCreate(comm, &(*body)->mesh));
+  PetscCall(PetscObjectSetOptionsPrefix((PetscObject)(*body)->mesh, prefix));
+  PetscCall(AbutBodyCreateSolver_Private(*body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutBodySetMaterial - Sets the elastic constants, eq. (2) of the paper
+
+   Logically Collective
+
+   Input Parameters:
++  body    - the body
+.  young   - Young's modulus, > 0, stress
+-  poisson - Poisson's ratio, -1 < nu < 0.5
+
+   Level: beginner
+
+.seealso: `AbutBodySetFromOptions()`, `AbutBodyGetMaterial()`
+@*/
+PetscErrorCode AbutBodySetMaterial(AbutBody body, PetscReal young, PetscReal poisson)
+{
+  MPI_Comm    comm = PetscObjectComm((PetscObject)body);
+  const char *name = ((PetscObject)body)->name;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, ABUTBODY_CLASSID, 1);
+  AbutCheckInput(young > 0., comm, "%s_material_young: %g is not a modulus; give a positive number, for example 2.1e5", name, (double)young);
+  AbutCheckInput(poisson > -1. && poisson < 0.5, comm, "%s_material_poisson: %g; plane strain needs -1 < nu < 0.5, for example 0.3", name, (double)poisson);
+  body->young      = young;
+  body->poisson    = poisson;
+  body->lambda     = young * poisson / ((1. + poisson) * (1. - 2. * poisson));
+  body->mu         = young / (2. * (1. + poisson));
+  body->generation = -1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutBodyGetMaterial - The elastic constants
+
+   Not Collective
+
+   Input Parameter:
+.  body - the body
+
+   Output Parameters:
++  young   - Young's modulus, stress
+-  poisson - Poisson's ratio
+
+   Level: beginner
+
+.seealso: `AbutBodySetMaterial()`
+@*/
+PetscErrorCode AbutBodyGetMaterial(AbutBody body, PetscReal *young, PetscReal *poisson)
+{
+  PetscFunctionBegin;
+  *young   = body->young;
+  *poisson = body->poisson;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutBodySetFromOptions - Reads the keys of a body, of its mesh and of its solver
+
+   Collective
+
+   Input Parameter:
+.  body - the body; its keys are listed under `AbutBodyCreate()`
+
+   Level: beginner
+
+.seealso: `AbutBodyCreate()`, `AbutBodySetUp()`
+@*/
+PetscErrorCode AbutBodySetFromOptions(AbutBody body)
+{
+  PetscReal young = body->young, poisson = body->poisson;
+  PetscBool hasyoung, haspoisson;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, ABUTBODY_CLASSID, 1);
+  PetscCall(AbutMeshSetFromOptions(body->mesh));
+  PetscObjectOptionsBegin((PetscObject)body);
+  PetscCall(AbutOptionsReal(PetscOptionsObject, "-material_young", "Young's modulus", &young, &hasyoung));
+  PetscCall(AbutOptionsReal(PetscOptionsObject, "-material_poisson", "Poisson's ratio", &poisson, &haspoisson));
+  AbutCheckInput(body->young > 0. || (hasyoung && haspoisson), PetscObjectComm((PetscObject)body), "%s_material_%s: missing; give %s", ((PetscObject)body)->name, hasyoung ? "poisson" : "young",
+                 hasyoung ? "Poisson's ratio, for example 0.3" : "Young's modulus, for example 2.1e5");
+  PetscCall(AbutBodySetMaterial(body, young, poisson));
+  PetscCall(AbutBodySetConditionsFromOptions_Private(body, PetscOptionsObject));
+  PetscOptionsEnd();
+  PetscCall(AbutBodyChooseSolver_Private(body, 0, PETSC_TRUE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutBodySetUp - Makes mesh, operator and vectors; after its mesh has adapted, makes them anew
+
+   Collective
+
+   Input Parameter:
+.  body - the body
+
+   Level: beginner
+
+.seealso: `AbutBodySetFromOptions()`, `AbutBodySolve()`
+@*/
+PetscErrorCode AbutBodySetUp(AbutBody body)
+{
+  const AbutMeshTopology *t;
+  PetscInt                generation;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, ABUTBODY_CLASSID, 1);
+  PetscCheck(body->young > 0., PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call AbutBodySetMaterial() or AbutBodySetFromOptions() first");
+  PetscCall(AbutMeshSetUp(body->mesh));
+  PetscCall(AbutMeshGetGeneration(body->mesh, &generation));
+  if (generation == body->generation) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AbutBodyReset_Private(body));
+  PetscCall(AbutMeshGetTopology(body->mesh, &t));
+  PetscCall(PetscCalloc1(2 * t->nvertices, &body->vertexu));
+  PetscCall(VecCreateGhostBlock(PetscObjectComm((PetscObject)body), 2, 2 * t->nowned, PETSC_DECIDE, t->nunknown - t->nowned, t->global + t->nowned, &body->u));
+  PetscCall(AbutBodyCreateVec(body, &body->load));
+  PetscCall(VecDuplicate(body->load, &body->lift));
+  PetscCall(VecDuplicate(body->load, &body->contact));
+  PetscCall(VecDuplicate(body->load, &body->rhs));
+  PetscCall(AbutBodyBoundarySetUp_Private(body));
+  PetscCall(AbutBodyConditionsSetUp_Private(body));
+  PetscCall(AbutBodyCheckHeld_Private(body));
+  PetscCall(AbutBodyAssemble_Private(body));
+  PetscCall(AbutBodyChooseSolver_Private(body, 2 * t->nglobal, PETSC_FALSE));
+  PetscCall(KSPSetOperators(body->ksp, body->A, body->A));
+  body->generation = generation;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Frees all that belongs to one mesh, the factor too: there is never room for two */
+PetscErrorCode AbutBodyReset_Private(AbutBody body)
+{
+  PetscFunctionBegin;
+  body->generation = -1;
+  PetscCall(KSPReset(body->ksp));
+  PetscCall(MatDestroy(&body->A));
+  PetscCall(MatDestroy(&body->Ac));
+  PetscCall(ISDestroy(&body->constrained));
+  PetscCall(VecDestroy(&body->prescribed));
+  PetscCall(VecDestroy(&body->load));
+  PetscCall(VecDestroy(&body->lift));
+  PetscCall(VecDestroy(&body->contact));
+  PetscCall(VecDestroy(&body->rhs));
+  PetscCall(VecDestroy(&body->u));
+  PetscCall(PetscFree(body->vertexu));
+  PetscCall(AbutBodyBoundaryReset_Private(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutBodyDestroy - Frees a body
+
+   Collective
+
+   Input Parameter:
+.  body - the body; set to `NULL`
+
+   Level: beginner
+
+.seealso: `AbutBodyCreate()`
+@*/
+PetscErrorCode AbutBodyDestroy(AbutBody *body)
+{
+  PetscFunctionBegin;
+  if (!*body) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscValidHeaderSpecific(*body, ABUTBODY_CLASSID, 1);
+  if (--((PetscObject)*body)->refct > 0) {
+    *body = NULL;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(AbutBodyReset_Private(*body));
+  for (PetscInt s = 0; s < ABUT_MAX_SIDES; ++s)
+    for (PetscInt d = 0; d < 2; ++d) PetscCall(AbutExpressionDestroy(&(*body)->condition[s][d].value));
+  PetscCall(KSPDestroy(&(*body)->ksp));
+  PetscCall(AbutMeshDestroy(&(*body)->mesh));
+  PetscCall(PetscHeaderDestroy(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutBodyView - Prints a body: material, mesh, solver
+
+   Collective
+
+   Input Parameters:
++  body   - the body
+-  viewer - the viewer
+
+   Level: beginner
+
+.seealso: `AbutBodyCreate()`
+@*/
+PetscErrorCode AbutBodyView(AbutBody body, PetscViewer viewer)
+{
+  KSPType       ksptype;
+  PCType        pctype;
+  PC            pc;
+  MatSolverType solver = NULL;
+
+  PetscFunctionBegin;
+  PetscCall(PetscViewerASCIIPrintf(viewer, "body %s: Young's modulus %g, Poisson's ratio %g, plane strain\n", ((PetscObject)body)->name, (double)body->young, (double)body->poisson));
+  PetscCall(PetscViewerASCIIPushTab(viewer));
+  if (body->generation >= 0) PetscCall(AbutMeshView(body->mesh, viewer));
+  PetscCall(KSPGetType(body->ksp, &ksptype));
+  PetscCall(KSPGetPC(body->ksp, &pc));
+  PetscCall(PCGetType(pc, &pctype));
+  if (body->A) PetscCall(PCFactorGetMatSolverType(pc, &solver));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "solver: %s with %s%s%s, chosen by %s\n", ksptype, pctype, solver ? " of " : "", solver ? solver : "", body->userksp ? "the user" : "size"));
+  PetscCall(PetscViewerASCIIPopTab(viewer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutBodyGetName - The name of a body
+
+   Not Collective
+
+   Input Parameter:
+.  body - the body
+
+   Output Parameter:
+.  name - its name, owned by the body
+
+   Level: beginner
+
+.seealso: `AbutBodyCreate()`
+@*/
+PetscErrorCode AbutBodyGetName(AbutBody body, const char *name[])
+{
+  PetscFunctionBegin;
+  *name = ((PetscObject)body)->name;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutBodyGetMesh - The mesh of a body
+
+   Not Collective
+
+   Input Parameter:
+.  body - the body
+
+   Output Parameter:
+.  mesh - its mesh, owned by the body
+
+   Level: intermediate
+
+.seealso: `AbutMesh`
+@*/
+PetscErrorCode AbutBodyGetMesh(AbutBody body, AbutMesh *mesh)
+{
+  PetscFunctionBegin;
+  *mesh = body->mesh;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutBodyGetKSP - The linear solver of a body
+
+   Not Collective
+
+   Input Parameter:
+.  body - the body
+
+   Output Parameter:
+.  ksp - the solver, owned by the body
+
+   Level: intermediate
+
+.seealso: `AbutBodySolve()`
+@*/
+PetscErrorCode AbutBodyGetKSP(AbutBody body, KSP *ksp)
+{
+  PetscFunctionBegin;
+  *ksp = body->ksp;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutBodyGetSize - The displacement unknowns of a body, prescribed ones included, hanging ones not
+
+   Not Collective
+
+   Input Parameter:
+.  body - the body, set up
+
+   Output Parameter:
+.  n - unknowns over all ranks
+
+   Level: beginner
+
+.seealso: `AbutBodySetUp()`
+@*/
+PetscErrorCode AbutBodyGetSize(AbutBody body, PetscInt *n)
+{
+  const AbutMeshTopology *t;
+
+  PetscFunctionBegin;
+  PetscCall(AbutMeshGetTopology(body->mesh, &t));
+  *n = 2 * t->nglobal;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutBodyGetHeight - The extent of a body along a direction
+
+   Not Collective
+
+   Input Parameters:
++  body   - the body
+-  normal - [2] unit vector
+
+   Output Parameter:
+.  height - its extent, length
+
+   Level: intermediate
+
+.seealso: `AbutPairGetTheta()`
+@*/
+PetscErrorCode AbutBodyGetHeight(AbutBody body, const PetscReal normal[2], PetscReal *height)
+{
+  PetscReal lower[2], upper[2];
+
+  PetscFunctionBegin;
+  PetscCall(AbutMeshGetBox(body->mesh, lower, upper));
+  *height = PetscAbsReal(normal[0]) * (upper[0] - lower[0]) + PetscAbsReal(normal[1]) * (upper[1] - lower[1]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutBodyCreateVec - Creates a vector of the body's unknowns: nodal displacements or forces
+
+   Collective
+
+   Input Parameter:
+.  body - the body, its mesh set up
+
+   Output Parameter:
+.  v - the vector, zero, block size 2
+
+   Level: intermediate
+
+.seealso: `AbutBodySolve()`, `AbutBodyCreateCellVec()`
+@*/
+PetscErrorCode AbutBodyCreateVec(AbutBody body, Vec *v)
+{
+  const AbutMeshTopology *t;
+
+  PetscFunctionBegin;
+  PetscCall(AbutMeshGetTopology(body->mesh, &t));
+  PetscCall(VecCreate(PetscObjectComm((PetscObject)body), v));
+  PetscCall(VecSetSizes(*v, 2 * t->nowned, 2 * t->nglobal));
+  PetscCall(VecSetBlockSize(*v, 2));
+  PetscCall(VecSetType(*v, VECSTANDARD));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutBodyCreateCellVec - Creates a vector with one value per cell
+
+   Collective
+
+   Input Parameter:
+.  body - the body, its mesh set up
+
+   Output Parameter:
+.  v - the vector, zero; local entry c belongs to local cell c
+
+   Level: intermediate
+
+.seealso: `AbutEstimatorEstimate()`
+@*/
+PetscErrorCode AbutBodyCreateCellVec(AbutBody body, Vec *v)
+{
+  const AbutMeshTopology *t;
+
+  PetscFunctionBegin;
+  PetscCall(AbutMeshGetTopology(body->mesh, &t));
+  PetscCall(VecCreateMPI(PetscObjectComm((PetscObject)body), t->ncells, PETSC_DETERMINE, v));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

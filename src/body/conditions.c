@@ -1,0 +1,314 @@
+#include <abut/private/bodyimpl.h> /*I "abutbody.h" I*/
+#include <petscdt.h>
+
+/* Boundary conditions (5), (6) of the paper, per component: prescribed displacement or traction of a named side */
+
+static PetscErrorCode AbutBodySetCondition_Private(AbutBody body, PetscInt side, PetscInt component, AbutConditionType type, AbutExpression value)
+{
+  AbutCondition *c = &body->condition[side][component];
+
+  PetscFunctionBegin;
+  PetscCall(AbutExpressionDestroy(&c->value));
+  c->type          = type;
+  c->value         = value;
+  body->generation = -1; /* what was set up is no longer right */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The keys bc_SIDE_u1, bc_SIDE_u2, bc_SIDE_t1, bc_SIDE_t2 of every side */
+PetscErrorCode AbutBodySetConditionsFromOptions_Private(AbutBody body, AbutOptionItems PetscOptionsObject)
+{
+  PetscInt nsides;
+
+  PetscFunctionBegin;
+  PetscCall(AbutMeshGetSideCount(body->mesh, &nsides));
+  for (PetscInt s = 0; s < nsides; ++s)
+    for (PetscInt d = 0; d < 2; ++d) {
+      const char *side;
+      PetscBool   given[2];
+
+      PetscCall(AbutMeshGetSideName(body->mesh, s, &side));
+      for (PetscInt k = 0; k < 2; ++k) {
+        char           opt[128], key[256], text[PETSC_MAX_PATH_LEN] = "";
+        AbutExpression value;
+
+        PetscCall(PetscSNPrintf(opt, sizeof(opt), "-bc_%s_%c%d", side, k ? 't' : 'u', (int)d + 1));
+        PetscCall(PetscSNPrintf(key, sizeof(key), "%s%s", ((PetscObject)body)->prefix, opt + 1));
+        PetscCall(AbutOptionsString(PetscOptionsObject, opt, k ? "Traction of the side" : "Displacement of the side", text, sizeof(text), &given[k]));
+        if (!given[k]) continue;
+        AbutCheckInput(!k || !given[0], PetscObjectComm((PetscObject)body), "%s: the same component also has its displacement given; give one of the two", key);
+        PetscCall(AbutExpressionCreate(PetscObjectComm((PetscObject)body), key, text, &value));
+        PetscCall(AbutBodySetCondition_Private(body, s, d, k ? ABUT_TRACTION : ABUT_DISPLACEMENT, value));
+      }
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutBodySetFunction_Private(AbutBody body, const char side[], PetscInt component, AbutConditionType type, AbutPointFunction function, void *ctx)
+{
+  PetscInt       s;
+  AbutExpression value;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, ABUTBODY_CLASSID, 1);
+  PetscCheck(component == 0 || component == 1, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_OUTOFRANGE, "Component %" PetscInt_FMT " is neither 0 nor 1", component);
+  PetscCall(AbutMeshFindSide(body->mesh, ((PetscObject)body)->name, side, &s));
+  PetscCall(AbutExpressionCreateFunction(function, ctx, &value));
+  PetscCall(AbutBodySetCondition_Private(body, s, component, type, value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutBodySetDisplacement - Prescribes one displacement component on a side
+
+   Logically Collective
+
+   Input Parameters:
++  body      - the body
+.  side      - name of the side
+.  component - 0 or 1
+.  function  - the displacement at a point, length
+-  ctx       - handed to the function
+
+   Level: intermediate
+
+.seealso: `AbutBodySetTraction()`, `AbutBodySetUp()`
+@*/
+PetscErrorCode AbutBodySetDisplacement(AbutBody body, const char side[], PetscInt component, AbutPointFunction function, void *ctx)
+{
+  PetscFunctionBegin;
+  PetscCall(AbutBodySetFunction_Private(body, side, component, ABUT_DISPLACEMENT, function, ctx));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutBodySetTraction - Prescribes one traction component on a side
+
+   Logically Collective
+
+   Input Parameters:
++  body      - the body
+.  side      - name of the side
+.  component - 0 or 1
+.  function  - the traction at a point, stress
+-  ctx       - handed to the function
+
+   Level: intermediate
+
+   Note:
+   Integrated element side by element side with 16 points that crowd at the ends, so that a kink or a root at a node does no harm.
+
+.seealso: `AbutBodySetDisplacement()`, `AbutBodySetUp()`
+@*/
+PetscErrorCode AbutBodySetTraction(AbutBody body, const char side[], PetscInt component, AbutPointFunction function, void *ctx)
+{
+  PetscFunctionBegin;
+  PetscCall(AbutBodySetFunction_Private(body, side, component, ABUT_TRACTION, function, ctx));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutBodySetContact - Says that a side takes part in a contact: its tractions are the contact forces
+
+   Logically Collective
+
+   Input Parameters:
++  body - the body
+-  side - number of the side
+
+   Level: developer
+
+   Note:
+   A component with prescribed displacement stays prescribed.
+
+.seealso: `AbutPair`, `AbutBodyGetCondition()`
+@*/
+PetscErrorCode AbutBodySetContact(AbutBody body, PetscInt side)
+{
+  PetscFunctionBegin;
+  for (PetscInt d = 0; d < 2; ++d)
+    if (body->condition[side][d].type == ABUT_TRACTION && !body->condition[side][d].value) body->condition[side][d].type = ABUT_CONTACT;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutBodyGetCondition - What is known on one component of a side
+
+   Not Collective
+
+   Input Parameters:
++  body      - the body
+.  side      - number of the side
+-  component - 0 or 1
+
+   Output Parameter:
+.  type - traction, displacement or contact
+
+   Level: intermediate
+
+.seealso: `AbutBodySetDisplacement()`, `AbutBodySetTraction()`
+@*/
+PetscErrorCode AbutBodyGetCondition(AbutBody body, PetscInt side, PetscInt component, AbutConditionType *type)
+{
+  PetscFunctionBegin;
+  *type = body->condition[side][component].type;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Moments of a prescribed traction against the two hat functions of an element side. The substitution s = z^3(10-15z+6z^2) crowds the points at the
+   ends, where a pressure may have a root or a kink; polynomials up to degree 4 are still integrated exactly. */
+PetscErrorCode AbutBodyEdgeMoments_Private(AbutBody body, PetscInt side, PetscInt component, const PetscReal a[2], const PetscReal b[2], PetscReal m[2])
+{
+  const AbutCondition *c      = &body->condition[side][component];
+  const PetscReal      length = PetscSqrtReal(PetscSqr(b[0] - a[0]) + PetscSqr(b[1] - a[1]));
+  PetscReal            z[16], w[16];
+
+  PetscFunctionBegin;
+  m[0] = m[1] = 0.;
+  if (c->type != ABUT_TRACTION || !c->value) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscDTGaussQuadrature(16, 0., 1., z, w));
+  for (PetscInt q = 0; q < 16; ++q) {
+    const PetscReal s = z[q] * z[q] * z[q] * (10. - 15. * z[q] + 6. * z[q] * z[q]), ds = 30. * PetscSqr(z[q] * (1. - z[q]));
+    const PetscReal x[2] = {a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1])};
+    PetscReal       t;
+
+    PetscCall(AbutExpressionEvaluate(c->value, x, &t));
+    m[0] += w[q] * ds * length * t * (1. - s);
+    m[1] += w[q] * ds * length * t * s;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutBodyLoad_Private(AbutBody body, const AbutMeshTopology *t)
+{
+  PetscFunctionBegin;
+  for (PetscInt e = 0; e < t->nsideedges; ++e) {
+    const PetscInt *edge = t->sideedge + 3 * e;
+
+    for (PetscInt d = 0; d < 2; ++d) {
+      const PetscInt row[2] = {2 * t->global[t->unknown[edge[0]]] + d, 2 * t->global[t->unknown[edge[1]]] + d};
+      PetscReal      m[2];
+
+      if (body->condition[edge[2]][d].type != ABUT_TRACTION || !body->condition[edge[2]][d].value) continue;
+      PetscCall(AbutBodyEdgeMoments_Private(body, edge[2], d, t->x + 2 * edge[0], t->x + 2 * edge[1], m));
+      PetscCall(VecSetValues(body->load, 2, row, m, ADD_VALUES));
+    }
+  }
+  PetscCall(VecAssemblyBegin(body->load));
+  PetscCall(VecAssemblyEnd(body->load));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The prescribed unknowns owned by this rank, found on the gathered boundary, so that a rank that owns a node without having its cell knows them too */
+PetscErrorCode AbutBodyConditionsSetUp_Private(AbutBody body)
+{
+  const AbutMeshTopology *t;
+  const AbutBoundary     *b = body->boundary;
+  PetscInt               *row, n = 0;
+  PetscReal              *value, *of;
+  PetscBool              *is;
+
+  PetscFunctionBegin;
+  PetscCall(AbutMeshGetTopology(body->mesh, &t));
+  PetscCall(PetscCalloc4(2 * b->n, &row, 2 * b->n, &value, 2 * b->n, &of, 2 * b->n, &is));
+  for (PetscInt i = 0; i < b->n; ++i)
+    for (PetscInt d = 0; d < 2; ++d) {
+      const PetscInt at[2] = {2 * i + d, 2 * b->end[i] + d};
+
+      if (body->condition[b->side[i]][d].type != ABUT_DISPLACEMENT) continue;
+      for (PetscInt k = 0; k < 2; ++k) {
+        if (is[at[k]]) continue; /* the first side of a corner has said it */
+        is[at[k]] = PETSC_TRUE;
+        PetscCall(AbutExpressionEvaluate(body->condition[b->side[i]][d].value, b->x + at[k] - d, &of[at[k]]));
+      }
+    }
+  for (PetscInt k = 0; k < 2 * b->n; ++k) {
+    const PetscInt vertex = body->boundaryglobal[k / 2];
+
+    if (!is[k] || vertex < t->firstowned || vertex >= t->firstowned + t->nowned) continue;
+    row[n]     = 2 * vertex + k % 2;
+    value[n++] = of[k];
+  }
+  PetscCall(PetscSortIntWithScalarArray(n, row, value));
+  PetscCall(ISCreateGeneral(PetscObjectComm((PetscObject)body), n, row, PETSC_COPY_VALUES, &body->constrained));
+  PetscCall(VecCreateMPI(PetscObjectComm((PetscObject)body), n, PETSC_DETERMINE, &body->prescribed));
+  {
+    PetscScalar *p;
+
+    PetscCall(VecGetArrayWrite(body->prescribed, &p));
+    for (PetscInt i = 0; i < n; ++i) p[i] = value[i];
+    PetscCall(VecRestoreArrayWrite(body->prescribed, &p));
+  }
+  PetscCall(PetscFree4(row, value, of, is));
+  PetscCall(AbutBodyLoad_Private(body, t));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A body on which some rigid motion is free has no solution of its own: say which motion, rather than divide by almost zero */
+PetscErrorCode AbutBodyCheckHeld_Private(AbutBody body)
+{
+  const AbutBoundary *b = body->boundary;
+  PetscReal           center[2] = {0., 0.}, size = 0., sum[2] = {0., 0.}, sum2 = 0., held;
+  PetscBool           u[2] = {PETSC_FALSE, PETSC_FALSE};
+  PetscInt            n[2] = {0, 0};
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < b->n; ++i)
+    for (PetscInt d = 0; d < 2; ++d) center[d] += b->x[2 * i + d] / b->n;
+  for (PetscInt i = 0; i < b->n; ++i)
+    for (PetscInt d = 0; d < 2; ++d) size = PetscMax(size, PetscAbsReal(b->x[2 * i + d] - center[d]));
+  for (PetscInt i = 0; i < b->n; ++i)
+    for (PetscInt d = 0; d < 2; ++d) {
+      if (body->condition[b->side[i]][d].type != ABUT_DISPLACEMENT) continue;
+      u[d] = PETSC_TRUE;
+      for (PetscInt end = 0; end < 2; ++end) {
+        const PetscReal arm = (b->x[2 * (end ? b->end[i] : i) + !d] - center[!d]) / size;
+
+        ++n[d];
+        sum[d] += arm;
+        sum2 += arm * arm;
+      }
+    }
+  for (PetscInt d = 0; d < 2; ++d)
+    AbutCheckInput(u[d], PetscObjectComm((PetscObject)body), "%s: nothing holds this body along %s; prescribe u%d on one of its sides, for example %s_bc_%s_u%d: 0", ((PetscObject)body)->name,
+                   d ? "y" : "x", (int)d + 1, ((PetscObject)body)->name, d ? "bottom" : "left", (int)d + 1);
+  /* a rotation about some point leaves all prescribed components in peace exactly if the arms are constant in each component */
+  held = sum2 - sum[0] * sum[0] / n[0] - sum[1] * sum[1] / n[1];
+  AbutCheckInput(held > 1e-10, PetscObjectComm((PetscObject)body), "%s: this body is free to turn; prescribe a displacement normal to a side of some length, for example %s_bc_bottom_u2: 0",
+                 ((PetscObject)body)->name, ((PetscObject)body)->name);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutBodyGetSupportDisplacement - The prescribed normal displacement on the far side of a body, opposite to a point: the base of a Winkler layer
+
+   Not Collective
+
+   Input Parameters:
++  body   - the body, a box
+.  x      - [2] point on one of its sides
+-  normal - [2] outward unit normal there
+
+   Output Parameters:
++  value - displacement of the far side along normal, length
+-  found - `PETSC_FALSE` where it is not prescribed
+
+   Level: developer
+
+.seealso: `AbutPairComputeWinkler()`
+@*/
+PetscErrorCode AbutBodyGetSupportDisplacement(AbutBody body, const PetscReal x[2], const PetscReal normal[2], PetscReal *value, PetscBool *found)
+{
+  const PetscInt d = PetscAbsReal(normal[0]) > PetscAbsReal(normal[1]) ? 0 : 1, far = 2 * d + (normal[d] > 0. ? 0 : 1);
+  PetscReal      lower[2], upper[2], foot[2] = {x[0], x[1]};
+
+  PetscFunctionBegin;
+  *found = (PetscBool)(body->condition[far][d].type == ABUT_DISPLACEMENT);
+  *value = 0.;
+  if (!*found) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AbutMeshGetBox(body->mesh, lower, upper));
+  foot[d] = far % 2 ? upper[d] : lower[d];
+  PetscCall(AbutExpressionEvaluate(body->condition[far][d].value, foot, value));
+  *value *= normal[d];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

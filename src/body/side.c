@@ -1,0 +1,159 @@
+#include <abut/private/bodyimpl.h> /*I "abutbody.h" I*/
+
+/* One side of a body as an ordered list of nodes, cut out of the gathered boundary */
+
+/* First boundary element of a side, and how many follow it; a side is one piece */
+static PetscErrorCode AbutSideRange_Private(AbutBody body, PetscInt side, PetscInt *first, PetscInt *n)
+{
+  const AbutBoundary *b = body->boundary;
+
+  PetscFunctionBegin;
+  *first = -1;
+  *n     = 0;
+  for (PetscInt i = 0; i < b->n; ++i) {
+    if (b->side[i] != side) continue;
+    if (*first < 0) *first = i; /* a contour begins where one side ends and the next begins */
+    ++*n;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Is the displacement along the normal of the boundary prescribed at this node, by this side or by the one next to it? */
+static PetscBool AbutNodeIsFixed_Private(AbutBody body, PetscInt node, const PetscReal normal[2])
+{
+  const AbutBoundary *b    = body->boundary;
+  PetscBool           u[2] = {PETSC_FALSE, PETSC_FALSE};
+
+  for (PetscInt i = 0; i < b->n; ++i) {
+    if (i != node && b->end[i] != node) continue;
+    for (PetscInt d = 0; d < 2; ++d)
+      if (body->condition[b->side[i]][d].type == ABUT_DISPLACEMENT) u[d] = PETSC_TRUE;
+  }
+  return (PetscBool)((u[0] || PetscAbsReal(normal[0]) < 1e-12) && (u[1] || PetscAbsReal(normal[1]) < 1e-12));
+}
+
+/*@C
+   AbutBodyGetSide - The nodes of a side, in order, with the body on the left; the same on all ranks
+
+   Collective on first use
+
+   Input Parameters:
++  body - the body, set up
+-  side - number of the side
+
+   Output Parameter:
+.  s - its nodes and normals, owned by the body, valid until its mesh adapts
+
+   Level: intermediate
+
+.seealso: `AbutBodyGetSideTrace()`, `AbutBodyAddSideForce()`
+@*/
+PetscErrorCode AbutBodyGetSide(AbutBody body, PetscInt side, const AbutSide **s)
+{
+  AbutSide           *out = &body->side[side];
+  const AbutBoundary *b   = body->boundary;
+  PetscInt            first, n;
+
+  PetscFunctionBegin;
+  *s = out;
+  if (out->n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AbutSideRange_Private(body, side, &first, &n));
+  PetscCheck(n > 0, PetscObjectComm((PetscObject)body), PETSC_ERR_PLIB, "Side %" PetscInt_FMT " has no element", side);
+  out->n = n + 1;
+  PetscCall(PetscMalloc4(2 * (n + 1), &out->x, 2 * n, &out->normal, n + 1, &out->global, n + 1, &out->fixed));
+  for (PetscInt i = 0, node = first; i <= n; ++i, node = b->end[node]) {
+    out->global[i] = body->boundaryglobal[node];
+    for (PetscInt d = 0; d < 2; ++d) out->x[2 * i + d] = b->x[2 * node + d];
+  }
+  for (PetscInt i = 0; i < n; ++i) {
+    const PetscReal d[2] = {out->x[2 * i + 2] - out->x[2 * i], out->x[2 * i + 3] - out->x[2 * i + 1]}, h = PetscSqrtReal(d[0] * d[0] + d[1] * d[1]);
+
+    out->normal[2 * i]     = d[1] / h;
+    out->normal[2 * i + 1] = -d[0] / h;
+  }
+  for (PetscInt i = 0, node = first; i <= n; ++i, node = b->end[node]) out->fixed[i] = AbutNodeIsFixed_Private(body, node, out->normal + 2 * PetscMin(i, n - 1));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Unit normal at a node: the direction of the sum of the normals of the elements that meet there */
+static void AbutSideNodeNormal_Private(const AbutSide *s, PetscInt i, PetscReal n[2])
+{
+  const PetscReal *p = s->normal + 2 * PetscMax(i - 1, 0), *q = s->normal + 2 * PetscMin(i, s->n - 2);
+  const PetscReal  m[2] = {p[0] + q[0], p[1] + q[1]}, h = PetscSqrtReal(m[0] * m[0] + m[1] * m[1]);
+
+  n[0] = m[0] / h;
+  n[1] = m[1] / h;
+}
+
+/*@C
+   AbutBodyGetSideTrace - The normal trace of a displacement on a side
+
+   Collective
+
+   Input Parameters:
++  body - the body
+.  side - number of the side
+-  u    - displacement, of the layout of `AbutBodyCreateVec()`
+
+   Output Parameter:
+.  un - [n] normal displacement at the nodes of the side, outward positive, length; the same on all ranks
+
+   Level: developer
+
+.seealso: `AbutBodyGetSide()`, `AbutBodyAddSideForce()`
+@*/
+PetscErrorCode AbutBodyGetSideTrace(AbutBody body, PetscInt side, Vec u, PetscReal un[])
+{
+  const AbutSide  *s;
+  const PetscReal *value;
+  PetscInt         node, n;
+
+  PetscFunctionBegin;
+  PetscCall(AbutBodyGetSide(body, side, &s));
+  PetscCall(AbutSideRange_Private(body, side, &node, &n));
+  PetscCall(AbutBodyGatherBoundary_Private(body, u, &value));
+  for (PetscInt i = 0; i <= n; ++i, node = body->boundary->end[node]) {
+    PetscReal normal[2];
+
+    AbutSideNodeNormal_Private(s, i, normal);
+    un[i] = normal[0] * value[2 * node] + normal[1] * value[2 * node + 1];
+  }
+  PetscCall(AbutBodyUngatherBoundary_Private(body, &value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutBodyAddSideForce - Adds normal nodal forces on a side to a vector of nodal forces
+
+   Collective
+
+   Input Parameters:
++  body  - the body
+.  side  - number of the side
+.  force - [n] forces along the outward normal at the nodes of the side, stress times length; the same on all ranks
+-  f     - vector of the layout of `AbutBodyCreateVec()`
+
+   Level: developer
+
+.seealso: `AbutBodyGetSideTrace()`, `AbutBodySolve()`
+@*/
+PetscErrorCode AbutBodyAddSideForce(AbutBody body, PetscInt side, const PetscReal force[], Vec f)
+{
+  const AbutSide *s;
+  PetscInt        low, high;
+  PetscScalar    *a;
+
+  PetscFunctionBegin;
+  PetscCall(AbutBodyGetSide(body, side, &s));
+  PetscCall(VecGetOwnershipRange(f, &low, &high));
+  PetscCall(VecGetArray(f, &a));
+  for (PetscInt i = 0; i < s->n; ++i) {
+    PetscReal normal[2];
+
+    if (2 * s->global[i] < low || 2 * s->global[i] >= high) continue;
+    AbutSideNodeNormal_Private(s, i, normal);
+    for (PetscInt d = 0; d < 2; ++d) a[2 * s->global[i] + d - low] += force[i] * normal[d];
+  }
+  PetscCall(VecRestoreArray(f, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

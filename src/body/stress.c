@@ -1,0 +1,177 @@
+#include <abut/private/bodyimpl.h> /*I "abutbody.h" I*/
+
+/*@
+   AbutBodyGetCellStress - The finite-element stress of the last solve at a point of a local cell, eqs. (1), (2) of the paper
+
+   Not Collective
+
+   Input Parameters:
++  body - the body
+.  c    - local cell
+-  xi   - [2] reference point: [-1,1]^2 for quads, (0,0)(1,0)(0,1) for triangles
+
+   Output Parameter:
+.  s - [3] s11, s22, s12, stress
+
+   Level: intermediate
+
+.seealso: `AbutBodySolve()`, `AbutVonMises()`
+@*/
+PetscErrorCode AbutBodyGetCellStress(AbutBody body, PetscInt c, const PetscReal xi[2], PetscReal s[3])
+{
+  const AbutMeshTopology *t;
+  PetscReal               x[2], N[4], G[8], det, g[4] = {0., 0., 0., 0.}, trace;
+
+  PetscFunctionBegin;
+  PetscCall(AbutMeshGetTopology(body->mesh, &t));
+  PetscCall(AbutMeshMapCell(body->mesh, c, xi, x, N, G, &det));
+  for (PetscInt k = 0; k < t->corners; ++k) {
+    const PetscReal *u = body->vertexu + 2 * t->cell[t->corners * c + k];
+
+    for (PetscInt i = 0; i < 2; ++i)
+      for (PetscInt j = 0; j < 2; ++j) g[2 * i + j] += u[i] * G[2 * k + j];
+  }
+  trace = body->lambda * (g[0] + g[3]);
+  s[0]  = trace + 2. * body->mu * g[0];
+  s[1]  = trace + 2. * body->mu * g[3];
+  s[2]  = body->mu * (g[1] + g[2]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutBodyGetCellPoint - Where a reference point of a local cell is, and the measure there
+
+   Not Collective
+
+   Input Parameters:
++  body - the body
+.  c    - local cell
+-  xi   - [2] reference point
+
+   Output Parameters:
++  x   - [2] the point
+-  det - Jacobian determinant of the map: a quadrature weight on the reference cell times this is an area
+
+   Level: intermediate
+
+.seealso: `AbutBodyGetCellStress()`
+@*/
+PetscErrorCode AbutBodyGetCellPoint(AbutBody body, PetscInt c, const PetscReal xi[2], PetscReal x[2], PetscReal *det)
+{
+  PetscReal N[4], G[8];
+
+  PetscFunctionBegin;
+  PetscCall(AbutMeshMapCell(body->mesh, c, xi, x, N, G, det));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutVonMises - The equivalent stress of plane strain, with s33 = nu (s11 + s22)
+
+   Not Collective
+
+   Input Parameters:
++  s       - [3] s11, s22, s12
+-  poisson - Poisson's ratio
+
+   Output Parameter:
+.  vm - von Mises stress
+
+   Level: beginner
+
+.seealso: `AbutBodyGetCellStress()`
+@*/
+PetscErrorCode AbutVonMises(const PetscReal s[3], PetscReal poisson, PetscReal *vm)
+{
+  const PetscReal s33 = poisson * (s[0] + s[1]);
+
+  PetscFunctionBegin;
+  *vm = PetscSqrtReal(0.5 * (PetscSqr(s[0] - s[1]) + PetscSqr(s[1] - s33) + PetscSqr(s33 - s[0])) + 3. * s[2] * s[2]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutBodyGetPointValues - Displacement and stress of the last solve at a point
+
+   Collective
+
+   Input Parameters:
++  body - the body
+-  x    - [2] the point; outside the body is bad input
+
+   Output Parameter:
+.  value - [7] u1, u2, s11, s22, s12, s33, von Mises; the same on all ranks
+
+   Level: beginner
+
+   Note:
+   Where cells meet, the stress is the mean over them, whichever ranks they are on.
+
+.seealso: `AbutBodySolve()`
+@*/
+PetscErrorCode AbutBodyGetPointValues(AbutBody body, const PetscReal x[2], PetscReal value[7])
+{
+  const AbutMeshTopology *t;
+  PetscReal               sum[6] = {0., 0., 0., 0., 0., 0.}, xi[2], at[2], N[4], G[8], det, s[3];
+  PetscBool               inside;
+
+  PetscFunctionBegin;
+  PetscCall(AbutMeshGetTopology(body->mesh, &t));
+  for (PetscInt c = 0; c < t->ncells; ++c) {
+    PetscCall(AbutMeshInvertCell(body->mesh, c, x, xi, &inside));
+    if (!inside) continue;
+    PetscCall(AbutMeshMapCell(body->mesh, c, xi, at, N, G, &det));
+    PetscCall(AbutBodyGetCellStress(body, c, xi, s));
+    for (PetscInt k = 0; k < t->corners; ++k)
+      for (PetscInt d = 0; d < 2; ++d) sum[d] += N[k] * body->vertexu[2 * t->cell[t->corners * c + k] + d];
+    for (PetscInt i = 0; i < 3; ++i) sum[2 + i] += s[i];
+    sum[5] += 1.;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 6, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  AbutCheckInput(sum[5] > 0., PetscObjectComm((PetscObject)body), "%s: the point (%g, %g) lies outside this body", ((PetscObject)body)->name, (double)x[0], (double)x[1]);
+  for (PetscInt i = 0; i < 5; ++i) value[i] = sum[i] / sum[5];
+  value[5] = body->poisson * (value[2] + value[3]);
+  PetscCall(AbutVonMises(value + 2, body->poisson, &value[6]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutBodyGetEnergy - Strain energy of the last solve, and the work of all forces on its displacements
+
+   Collective
+
+   Input Parameter:
+.  body - the body
+
+   Output Parameters:
++  strain - 1/2 a(u,u) from the element matrices, stress times area
+-  work   - tractions, contact forces and reactions times their displacements; in equilibrium twice the strain energy
+
+   Level: intermediate
+
+.seealso: `AbutBodySolve()`
+@*/
+PetscErrorCode AbutBodyGetEnergy(AbutBody body, PetscReal *strain, PetscReal *work)
+{
+  const AbutMeshTopology *t;
+  PetscReal               K[64], sum = 0., w[3];
+  Vec                     reaction;
+
+  PetscFunctionBegin;
+  PetscCall(AbutMeshGetTopology(body->mesh, &t));
+  for (PetscInt c = 0; c < t->ncells; ++c) {
+    const PetscInt *v = t->cell + t->corners * c, n = 2 * t->corners;
+
+    PetscCall(AbutCellStiffness_Private(body, c, K));
+    for (PetscInt i = 0; i < n; ++i)
+      for (PetscInt j = 0; j < n; ++j) sum += 0.5 * K[n * i + j] * body->vertexu[2 * v[i / 2] + i % 2] * body->vertexu[2 * v[j / 2] + j % 2];
+  }
+  PetscCallMPI(MPI_Allreduce(&sum, strain, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  PetscCall(VecDot(body->load, body->u, &w[0]));
+  PetscCall(VecDot(body->contact, body->u, &w[1]));
+  PetscCall(AbutBodyCreateReaction_Private(body, &reaction));
+  PetscCall(VecDot(reaction, body->u, &w[2]));
+  PetscCall(VecDestroy(&reaction));
+  *work = w[0] + w[1] + w[2];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,301 @@
+#include <abut/private/estimatorimpl.h> /*I "abutestimator.h" I*/
+#include <abut/private/pluginimpl.h>
+
+PetscClassId ABUTESTIMATOR_CLASSID;
+
+static PetscLogEvent     ABUTESTIMATOR_Estimate;
+static PetscFunctionList AbutEstimatorList        = NULL;
+static PetscBool         AbutEstimatorInitialized = PETSC_FALSE;
+
+static PetscErrorCode AbutEstimatorFinalizePackage(void)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFunctionListDestroy(&AbutEstimatorList));
+  AbutEstimatorInitialized = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutEstimatorInitializePackage(void)
+{
+  PetscFunctionBegin;
+  if (AbutEstimatorInitialized) PetscFunctionReturn(PETSC_SUCCESS);
+  AbutEstimatorInitialized = PETSC_TRUE;
+  PetscCall(PetscClassIdRegister("Abut Estimator", &ABUTESTIMATOR_CLASSID));
+  PetscCall(PetscLogEventRegister("AbutEstimate", ABUTESTIMATOR_CLASSID, &ABUTESTIMATOR_Estimate));
+  PetscCall(PetscRegisterFinalize(AbutEstimatorFinalizePackage));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutEstimatorRegister - Adds a type of estimator
+
+   Not Collective, to be called by all ranks
+
+   Input Parameters:
++  name   - the value of `-estimator_type` that chooses it
+-  create - fills in a new estimator: `AbutEstimatorSetOps()`, and `AbutEstimatorSetData()` if it has data
+
+   Level: advanced
+
+   Note:
+   A plugin calls this in its function `PetscDLLibraryRegister_estimator_NAME()`; `plugins/template` is one to copy.
+
+.seealso: `AbutEstimatorSetType()`, `AbutEstimatorSetOps()`, `AbutPluginLoad()`
+@*/
+PetscErrorCode AbutEstimatorRegister(const char name[], PetscErrorCode (*create)(AbutEstimator))
+{
+  PetscFunctionBegin;
+  PetscCall(AbutEstimatorInitializePackage());
+  PetscCall(PetscFunctionListAdd(&AbutEstimatorList, name, create));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutEstimatorCreate - Creates an estimator, yet without a type
+
+   Collective
+
+   Input Parameter:
+.  comm - the communicator of the bodies it will be used for
+
+   Output Parameter:
+.  est - the estimator
+
+   Level: beginner
+
+.seealso: `AbutEstimatorSetFromOptions()`, `AbutEstimatorEstimate()`, `AbutEstimatorDestroy()`
+@*/
+PetscErrorCode AbutEstimatorCreate(MPI_Comm comm, AbutEstimator *est)
+{
+  PetscFunctionBegin;
+  PetscAssertPointer(est, 2);
+  PetscCall(AbutEstimatorInitializePackage());
+  PetscCall(PetscHeaderCreate(*est, ABUTESTIMATOR_CLASSID, "AbutEstimator", "Error estimator", "Estimator", comm, AbutEstimatorDestroy,
+                              AbutEstimatorView));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutEstimatorDestroy - Frees an estimator
+
+   Collective
+
+   Input Parameter:
+.  est - the estimator, `NULL` afterwards
+
+   Level: beginner
+
+.seealso: `AbutEstimatorCreate()`
+@*/
+PetscErrorCode AbutEstimatorDestroy(AbutEstimator *est)
+{
+  PetscFunctionBegin;
+  if (!*est) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscValidHeaderSpecific(*est, ABUTESTIMATOR_CLASSID, 1);
+  if (--((PetscObject)*est)->refct > 0) {
+    *est = NULL;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscTryTypeMethod(*est, destroy);
+  PetscCall(PetscHeaderDestroy(est));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What there is to choose from: the files of plugins, and what else has registered */
+static PetscErrorCode AbutEstimatorListNames_Private(char names[], size_t len)
+{
+  const char **registered = NULL;
+  int          n          = 0;
+
+  PetscFunctionBegin;
+  PetscCall(AbutPluginListAvailable("estimator", names, len));
+  PetscCall(PetscFunctionListGet(AbutEstimatorList, &registered, &n));
+  for (int i = 0; i < n && registered[i]; ++i)
+    PetscCall(AbutListAddItem_Private(names, len, registered[i])); /* n counts a trailing NULL in PETSc 3.18 */
+  PetscCall(PetscFree(registered));
+  if (!names[0]) PetscCall(PetscStrncpy(names, "none", len));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutEstimatorFindType_Private(AbutEstimator est, AbutEstimatorType type, PetscErrorCode (**create)(AbutEstimator))
+{
+  MPI_Comm  comm = PetscObjectComm((PetscObject)est);
+  PetscBool found;
+  char      names[512];
+
+  PetscFunctionBegin;
+  PetscCall(PetscFunctionListFind(AbutEstimatorList, type, create));
+  if (*create) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AbutPluginLoad(comm, "estimator", type, &found));
+  PetscCall(PetscFunctionListFind(AbutEstimatorList, type, create));
+  if (*create) PetscFunctionReturn(PETSC_SUCCESS);
+  AbutCheckInput(!found, comm,
+                 "estimator_type: libestimator_%s.so was opened but registers no estimator \"%s\"; its AbutEstimatorRegister() must use "
+                 "the name of the file",
+                 type, type);
+  PetscCall(AbutEstimatorListNames_Private(names, sizeof(names)));
+  SETERRQ(comm, PETSC_ERR_USER_INPUT,
+          "estimator_type: no estimator named \"%s\"; there are: %s (a plugin from elsewhere is loaded with -plugin "
+          "path/to/libestimator_NAME.so)",
+          type, names);
+}
+
+/*@C
+   AbutEstimatorSetType - Chooses how the error is estimated
+
+   Collective
+
+   Input Parameters:
++  est  - the estimator
+-  type - a name, such as `ABUTESTIMATORFEMBEM` or `ABUTESTIMATORZZ`
+
+   Options Database Keys:
++  -estimator_type type - the name
+-  -plugin_path folder  - where `libestimator_NAME.so` is looked for
+
+   Level: beginner
+
+   Note:
+   A type that is not yet registered is looked for as the plugin `libestimator_NAME.so`; only the plugin of the chosen type is opened.
+
+.seealso: `AbutEstimatorSetFromOptions()`, `AbutEstimatorGetType()`, `AbutEstimatorRegister()`
+@*/
+PetscErrorCode AbutEstimatorSetType(AbutEstimator est, AbutEstimatorType type)
+{
+  PetscErrorCode (*create)(AbutEstimator) = NULL;
+  PetscBool same;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(est, ABUTESTIMATOR_CLASSID, 1);
+  PetscCall(PetscObjectTypeCompare((PetscObject)est, type, &same));
+  if (same) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AbutEstimatorFindType_Private(est, type, &create));
+  PetscTryTypeMethod(est, destroy);
+  PetscCall(PetscMemzero(est->ops, sizeof(*est->ops)));
+  est->data     = NULL;
+  est->unknowns = 0;
+  PetscCall(PetscObjectChangeTypeName((PetscObject)est, type));
+  PetscCall((*create)(est));
+  AbutCheckInput(est->ops->estimate, PetscObjectComm((PetscObject)est),
+                 "estimator_type: the create routine of \"%s\" set no function estimate; give it one with AbutEstimatorSetOps()", type);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutEstimatorGetType - Gets the name of the type
+
+   Not Collective
+
+   Input Parameter:
+.  est - the estimator
+
+   Output Parameter:
+.  type - the name, `NULL` if none was chosen
+
+   Level: beginner
+
+.seealso: `AbutEstimatorSetType()`
+@*/
+PetscErrorCode AbutEstimatorGetType(AbutEstimator est, AbutEstimatorType *type)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(est, ABUTESTIMATOR_CLASSID, 1);
+  *type = ((PetscObject)est)->type_name;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutEstimatorSetFromOptions - Chooses the type, and lets it read its own options
+
+   Collective
+
+   Input Parameter:
+.  est - the estimator
+
+   Options Database Key:
+.  -estimator_type <fembem> - the type
+
+   Level: beginner
+
+.seealso: `AbutEstimatorSetType()`
+@*/
+PetscErrorCode AbutEstimatorSetFromOptions(AbutEstimator est)
+{
+  char type[256] = ABUTESTIMATORDEFAULT;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(est, ABUTESTIMATOR_CLASSID, 1);
+  if (((PetscObject)est)->type_name) PetscCall(PetscStrncpy(type, ((PetscObject)est)->type_name, sizeof(type)));
+  PetscObjectOptionsBegin((PetscObject)est);
+  PetscCall(AbutOptionsString(PetscOptionsObject, "-estimator_type", "how the error is estimated: the name of a plugin", type, sizeof(type),
+                              NULL));
+  PetscCall(AbutEstimatorSetType(est, type));
+  PetscTryTypeMethod(est, setfromoptions, PetscOptionsObject);
+  PetscOptionsEnd();
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutEstimatorEstimate - Estimates the error of the last solve of a body, cell by cell
+
+   Collective
+
+   Input Parameters:
++  est  - the estimator, its type chosen
+-  body - the body, solved
+
+   Output Parameter:
+.  eta - a vector of `AbutBodyCreateCellVec()`: the eta_e of eq. (27) of the paper, of no dimension
+
+   Level: beginner
+
+   Notes:
+   Logged as "AbutEstimate".
+
+   The estimate is of the discretisation error of the linear problem just solved: it says nothing of penalty, gap or an unconverged loop.
+
+.seealso: `AbutEstimatorGetNorms()`, `AbutEstimatorGetUnknowns()`, `AbutAdaptorMark()`
+@*/
+PetscErrorCode AbutEstimatorEstimate(AbutEstimator est, AbutBody body, Vec eta)
+{
+  PetscReal *e, norm;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(est, ABUTESTIMATOR_CLASSID, 1);
+  PetscCheck(est->ops->estimate, PetscObjectComm((PetscObject)est), PETSC_ERR_ORDER,
+             "Choose a type with AbutEstimatorSetType() or AbutEstimatorSetFromOptions() first");
+  PetscCall(PetscLogEventBegin(ABUTESTIMATOR_Estimate, est, 0, 0, 0));
+  est->unknowns = 0;
+  PetscCall(VecGetArrayWrite(eta, &e));
+  PetscUseTypeMethod(est, estimate, body, e);
+  PetscCall(VecRestoreArrayWrite(eta, &e));
+  PetscCall(PetscLogEventEnd(ABUTESTIMATOR_Estimate, est, 0, 0, 0));
+  PetscCall(VecNorm(eta, NORM_1, &norm)); /* a NaN would be above no threshold, and pass for a small error */
+  PetscCheck(!PetscIsInfOrNanReal(norm), PetscObjectComm((PetscObject)est), PETSC_ERR_FP,
+             "Estimator \"%s\" gave an indicator that is not a number", ((PetscObject)est)->type_name);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutEstimatorView - Prints the type and its settings
+
+   Collective
+
+   Input Parameters:
++  est    - the estimator
+-  viewer - where to
+
+   Level: beginner
+
+.seealso: `AbutEstimatorCreate()`
+@*/
+PetscErrorCode AbutEstimatorView(AbutEstimator est, PetscViewer viewer)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(est, ABUTESTIMATOR_CLASSID, 1);
+  PetscCall(PetscObjectPrintClassNamePrefixType((PetscObject)est, viewer));
+  PetscCall(PetscViewerASCIIPushTab(viewer));
+  PetscTryTypeMethod(est, view, viewer);
+  PetscCall(PetscViewerASCIIPopTab(viewer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

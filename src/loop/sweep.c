@@ -1,0 +1,203 @@
+#include <abut/private/loopimpl.h> /*I "abutloop.h" I*/
+
+/* One sweep, eq. (20) of the paper: traces -> pressures -> forces -> one solve per body -> traces */
+
+/* Pressures p act, every body is solved with them, its traces go to g */
+static PetscErrorCode AbutInterfaceSolveBodies_Private(AbutInterface f)
+{
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < f->nbodies; ++b) PetscCall(VecZeroEntries(f->force[b]));
+  for (PetscInt i = 0; i < f->npairs; ++i) {
+    const PetscInt *o = f->offset + 2 * i;
+    AbutBody        bodies[2];
+    PetscInt        sides[2];
+    PetscReal      *force;
+
+    PetscCall(AbutPairGetBodies(f->pair[i], bodies, sides));
+    PetscCall(PetscMalloc1(o[2] - o[0], &force));
+    PetscCall(AbutPairComputeForce(f->pair[i], f->p[i], force, force + o[1] - o[0]));
+    for (PetscInt k = 0; k < o[2] - o[0]; ++k) force[k] = -force[k]; /* a pressure pushes against the outward normal */
+    for (PetscInt s = 0; s < 2; ++s)
+      for (PetscInt b = 0; b < f->nbodies; ++b)
+        if (f->body[b] == bodies[s]) PetscCall(AbutBodyAddSideForce(bodies[s], sides[s], force + o[s] - o[0], f->force[b]));
+    PetscCall(PetscFree(force));
+  }
+  for (PetscInt b = 0; b < f->nbodies; ++b) {
+    KSP                ksp;
+    KSPConvergedReason reason;
+
+    PetscCall(AbutBodySolve(f->body[b], f->force[b]));
+    PetscCall(AbutBodyGetKSP(f->body[b], &ksp));
+    PetscCall(KSPGetConvergedReason(ksp, &reason));
+    if (reason < 0) f->linearfailed = PETSC_TRUE;
+  }
+  for (PetscInt i = 0; i < f->npairs; ++i) {
+    AbutBody bodies[2];
+    PetscInt sides[2];
+    Vec      u;
+
+    PetscCall(AbutPairGetBodies(f->pair[i], bodies, sides));
+    for (PetscInt s = 0; s < 2; ++s) {
+      PetscCall(AbutBodyGetSolution(bodies[s], &u));
+      PetscCall(AbutBodyGetSideTrace(bodies[s], sides[s], u, f->g + f->offset[2 * i + s]));
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* |G-x|/|G|, and the same of the pressures that G would give */
+static PetscErrorCode AbutInterfaceResiduals_Private(AbutInterface f)
+{
+  PetscReal e2 = 0., g2 = 0., ep2 = 0., p2 = 0.;
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < f->offset[2 * f->npairs]; ++k) {
+    e2 += PetscSqr(f->g[k] - f->x[k]);
+    g2 += PetscSqr(f->g[k]);
+  }
+  for (PetscInt i = 0; i < f->npairs; ++i) {
+    const PetscReal *x, *D;
+    PetscReal       *p;
+    PetscInt         which, n;
+
+    PetscCall(AbutPairGetPressureNodes(f->pair[i], &which, &n, &x, &D));
+    PetscCall(PetscMalloc1(n, &p));
+    PetscCall(AbutPairComputePressure(f->pair[i], f->g + f->offset[2 * i], f->g + f->offset[2 * i + 1], p));
+    for (PetscInt k = 0; k < n; ++k) {
+      ep2 += D[k] * PetscSqr(p[k] - f->p[i][k]);
+      p2 += D[k] * PetscSqr(p[k]);
+    }
+    PetscCall(PetscFree(p));
+  }
+  f->residual         = g2 > 0. ? PetscSqrtReal(e2 / g2) : (e2 > 0. ? 1. : 0.);
+  f->pressureresidual = p2 > 0. ? PetscSqrtReal(ep2 / p2) : (ep2 > 0. ? 1. : 0.);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutInterfaceSweep - One sweep: solves every body once with the pressures of a trace, and returns the new trace G(x)
+
+   Collective
+
+   Input Parameters:
++  iface - the map, set up
+-  x     - trace, length
+
+   Output Parameter:
+.  G - the new trace; what was computed for the same x is returned without a sweep
+
+   Level: intermediate
+
+.seealso: `AbutInterfaceGetSweeps()`, `AbutInterfaceSetSNES()`
+@*/
+PetscErrorCode AbutInterfaceSweep(AbutInterface iface, Vec x, Vec G)
+{
+  PetscObjectId    id;
+  PetscObjectState state;
+
+  PetscFunctionBegin;
+  PetscCall(PetscObjectGetId((PetscObject)x, &id));
+  PetscCall(PetscObjectStateGet((PetscObject)x, &state));
+  if (id != iface->id || state != iface->state) {
+    PetscBool same = PETSC_FALSE;
+
+    if (iface->id) { /* another vector with the very values of the last sweep: solvers copy their iterates */
+      PetscReal *full;
+      PetscInt   all = iface->offset[2 * iface->npairs];
+
+      PetscCall(PetscMalloc1(all, &full));
+      PetscCall(AbutInterfaceReplicate_Private(iface, x, full));
+      PetscCall(PetscArraycmp(full, iface->x, all, &same));
+      PetscCall(PetscFree(full));
+    }
+    if (!same) {
+      PetscCall(PetscLogEventBegin(ABUTINTERFACE_Sweep, iface, 0, 0, 0));
+      PetscCall(AbutInterfaceReplicate_Private(iface, x, iface->x));
+      for (PetscInt i = 0; i < iface->npairs; ++i)
+        PetscCall(AbutPairComputePressure(iface->pair[i], iface->x + iface->offset[2 * i], iface->x + iface->offset[2 * i + 1], iface->p[i]));
+      PetscCall(AbutInterfaceSolveBodies_Private(iface));
+      PetscCall(AbutInterfaceResiduals_Private(iface));
+      PetscCall(AbutInterfaceLocalize_Private(iface, iface->g, iface->G));
+      ++iface->sweeps;
+      if (iface->residual < iface->residualbest) {
+        iface->residualbest = iface->residual;
+        PetscCall(PetscArraycpy(iface->xbest, iface->x, iface->offset[2 * iface->npairs]));
+      }
+      PetscCall(PetscLogEventEnd(ABUTINTERFACE_Sweep, iface, 0, 0, 0));
+    }
+    iface->id    = id;
+    iface->state = state;
+  }
+  PetscCall(VecCopy(iface->G, G));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutInterfaceSweepBest - Takes bodies and trace back to the trace of least residual since the set-up: what a failed loop leaves
+
+   Collective
+
+   Input Parameter:
+.  iface - the map
+
+   Output Parameter:
+.  x - that trace
+
+   Level: developer
+
+.seealso: `AbutInterfaceSweep()`, `AbutInterfaceGetVerdict()`
+@*/
+PetscErrorCode AbutInterfaceSweepBest(AbutInterface iface, Vec x)
+{
+  Vec G;
+
+  PetscFunctionBegin;
+  if (iface->residualbest == PETSC_MAX_REAL || iface->residual <= iface->residualbest) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AbutInterfaceLocalize_Private(iface, iface->xbest, x));
+  PetscCall(VecDuplicate(x, &G));
+  PetscCall(AbutInterfaceSweep(iface, x, G));
+  PetscCall(VecDestroy(&G));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+const char *const AbutStarts[] = {"winkler", "nocontact", "zero", NULL};
+
+/*@
+   AbutInterfaceComputeStart - The first trace of a loop
+
+   Collective
+
+   Input Parameters:
++  iface - the map, set up
+-  start - `ABUT_START_WINKLER` two elastic layers, the paper's; `ABUT_START_NOCONTACT` every body solved without contact forces; `ABUT_START_ZERO`
+
+   Output Parameter:
+.  x - the trace
+
+   Level: intermediate
+
+   Note:
+   Winkler needs a support with prescribed displacement opposite to each side; without it the start is without contact.
+
+.seealso: `AbutInterfaceSweep()`, `AbutPairComputeWinkler()`
+@*/
+PetscErrorCode AbutInterfaceComputeStart(AbutInterface iface, AbutStart start, Vec x)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscArrayzero(iface->x, iface->offset[2 * iface->npairs]));
+  iface->id = 0;
+  for (PetscInt i = 0; start == ABUT_START_WINKLER && i < iface->npairs; ++i) {
+    PetscBool found;
+
+    PetscCall(AbutPairComputeWinkler(iface->pair[i], iface->x + iface->offset[2 * i], iface->x + iface->offset[2 * i + 1], &found));
+    if (!found) start = ABUT_START_NOCONTACT;
+  }
+  if (start == ABUT_START_NOCONTACT) {
+    for (PetscInt i = 0; i < iface->npairs; ++i) PetscCall(PetscArrayzero(iface->p[i], iface->offset[2 * i + 2] - iface->offset[2 * i]));
+    PetscCall(AbutInterfaceSolveBodies_Private(iface));
+    PetscCall(PetscArraycpy(iface->x, iface->g, iface->offset[2 * iface->npairs]));
+    ++iface->startsweeps;
+  }
+  PetscCall(AbutInterfaceLocalize_Private(iface, iface->x, x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

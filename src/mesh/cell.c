@@ -1,0 +1,130 @@
+#include <abut/private/meshimpl.h> /*I "abutmesh.h" I*/
+
+/* Shape functions of order 1 and their derivatives in the reference cell */
+static void AbutCellShape_Private(PetscInt corners, const PetscReal xi[2], PetscReal N[], PetscReal dN[])
+{
+  static const PetscReal s[4] = {-1., 1., 1., -1.}, t[4] = {-1., -1., 1., 1.};
+
+  if (corners == 3) {
+    const PetscReal d[6] = {-1., -1., 1., 0., 0., 1.};
+
+    N[0] = 1. - xi[0] - xi[1];
+    N[1] = xi[0];
+    N[2] = xi[1];
+    for (PetscInt i = 0; i < 6; ++i) dN[i] = d[i];
+    return;
+  }
+  for (PetscInt k = 0; k < 4; ++k) {
+    N[k]          = 0.25 * (1. + s[k] * xi[0]) * (1. + t[k] * xi[1]);
+    dN[2 * k]     = 0.25 * s[k] * (1. + t[k] * xi[1]);
+    dN[2 * k + 1] = 0.25 * t[k] * (1. + s[k] * xi[0]);
+  }
+}
+
+/*@C
+   AbutMeshMapCell - Maps a reference point into a local cell
+
+   Not Collective
+
+   Input Parameters:
++  mesh - the mesh
+.  c    - local cell
+-  xi   - [2] reference point: [-1,1]^2 for quads, (0,0)(1,0)(0,1) for triangles
+
+   Output Parameters:
++  x   - [2] the point in space
+.  N   - [corners] shape functions
+.  G   - [2*corners] their gradients in space, 1/length
+-  det - determinant of the map's Jacobian, area
+
+   Level: developer
+
+.seealso: `AbutMeshInvertCell()`, `AbutMeshGetTopology()`
+@*/
+PetscErrorCode AbutMeshMapCell(AbutMesh mesh, PetscInt c, const PetscReal xi[2], PetscReal x[2], PetscReal N[], PetscReal G[], PetscReal *det)
+{
+  const AbutMeshTopology *t    = &mesh->topology;
+  const PetscInt         *v    = t->cell + t->corners * c;
+  PetscReal               dN[8], J[4] = {0., 0., 0., 0.}, d;
+
+  PetscFunctionBegin;
+  AbutCellShape_Private(t->corners, xi, N, dN);
+  x[0] = x[1] = 0.;
+  for (PetscInt k = 0; k < t->corners; ++k)
+    for (PetscInt i = 0; i < 2; ++i) {
+      const PetscReal xk = t->x[2 * v[k] + i];
+
+      x[i] += N[k] * xk;
+      for (PetscInt j = 0; j < 2; ++j) J[2 * i + j] += xk * dN[2 * k + j];
+    }
+  d = J[0] * J[3] - J[1] * J[2];
+  for (PetscInt k = 0; k < t->corners; ++k) {
+    G[2 * k]     = (dN[2 * k] * J[3] - dN[2 * k + 1] * J[2]) / d;
+    G[2 * k + 1] = (-dN[2 * k] * J[1] + dN[2 * k + 1] * J[0]) / d;
+  }
+  *det = d;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutMeshInvertCell - Finds the reference point of a point in a local cell
+
+   Not Collective
+
+   Input Parameters:
++  mesh - the mesh
+.  c    - local cell
+-  x    - [2] the point
+
+   Output Parameters:
++  xi     - [2] the reference point, where inside
+-  inside - whether the point lies in the cell or on its border, to 1e-9 of its size
+
+   Level: developer
+
+   Note:
+   Newton's method on the bilinear map; exact after one step on parallelograms and triangles.
+
+.seealso: `AbutMeshMapCell()`
+@*/
+PetscErrorCode AbutMeshInvertCell(AbutMesh mesh, PetscInt c, const PetscReal x[2], PetscReal xi[2], PetscBool *inside)
+{
+  const AbutMeshTopology *t      = &mesh->topology;
+  const PetscInt         *v      = t->cell + t->corners * c;
+  const PetscReal         margin = 1e-9;
+  PetscReal               N[4], G[8], at[2], det, lo[2] = {PETSC_MAX_REAL, PETSC_MAX_REAL}, hi[2] = {PETSC_MIN_REAL, PETSC_MIN_REAL};
+
+  PetscFunctionBegin;
+  *inside = PETSC_FALSE;
+  for (PetscInt k = 0; k < t->corners; ++k)
+    for (PetscInt i = 0; i < 2; ++i) {
+      lo[i] = PetscMin(lo[i], t->x[2 * v[k] + i]);
+      hi[i] = PetscMax(hi[i], t->x[2 * v[k] + i]);
+    }
+  for (PetscInt i = 0; i < 2; ++i)
+    if (x[i] < lo[i] - margin * (hi[i] - lo[i]) || x[i] > hi[i] + margin * (hi[i] - lo[i])) PetscFunctionReturn(PETSC_SUCCESS);
+  xi[0] = xi[1] = t->corners == 3 ? 1. / 3. : 0.;
+  for (PetscInt it = 0; it < 20; ++it) {
+    PetscReal step[2] = {0., 0.};
+
+    PetscCall(AbutMeshMapCell(mesh, c, xi, at, N, G, &det));
+    /* the columns of the inverse Jacobian are the gradients of the reference coordinates */
+    for (PetscInt j = 0; j < 2; ++j) {
+      if (t->corners == 3) {
+        step[0] += G[2 + j] * (x[j] - at[j]);
+        step[1] += G[4 + j] * (x[j] - at[j]);
+      } else
+        for (PetscInt k = 0; k < 4; ++k) {
+          static const PetscReal s[4] = {-1., 1., 1., -1.}, r[4] = {-1., -1., 1., 1.};
+
+          step[0] += s[k] * G[2 * k + j] * (x[j] - at[j]);
+          step[1] += r[k] * G[2 * k + j] * (x[j] - at[j]);
+        }
+    }
+    xi[0] += step[0];
+    xi[1] += step[1];
+    if (PetscAbsReal(step[0]) + PetscAbsReal(step[1]) < 1e-13) break;
+  }
+  *inside = t->corners == 3 ? (PetscBool)(xi[0] > -margin && xi[1] > -margin && xi[0] + xi[1] < 1. + margin) : (PetscBool)(PetscAbsReal(xi[0]) < 1. + margin && PetscAbsReal(xi[1]) < 1. + margin);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,229 @@
+#include <abut/private/meshimpl.h>
+#include <p4est_bits.h>
+#include <p4est_extended.h>
+#include <p4est_plex.h>
+
+/* Quadrilaterals: p4est holds the quadtree (refinement, balance, partition), DMPlex holds the mesh */
+typedef struct {
+  p4est_connectivity_t *connectivity;
+  p4est_t              *p4est;
+} AbutMesh_Forest;
+
+/* The arrays in which p4est_get_plex_data() describes a mesh as a DMPlex */
+typedef struct {
+  sc_array_t *points, *conesizes, *cones, *orientations, *coordinates, *children, *parents, *childids, *leaves, *remotes;
+} AbutPlexData;
+
+static int AbutForestIsMarked_Private(PETSC_UNUSED p4est_t *p4est, PETSC_UNUSED p4est_topidx_t tree, p4est_quadrant_t *quadrant)
+{
+  return quadrant->p.user_int;
+}
+
+/* Two children of a side and their middle have numbers in DMPlex's reference tree; p4est's own numbering differs, so they are told by incidence */
+static PetscErrorCode AbutForestReferenceIds_Private(DM reference, PetscInt ids[3])
+{
+  PetscInt        eStart, eEnd, side = -1, nchildren;
+  const PetscInt *children, *cone;
+
+  PetscFunctionBegin;
+  PetscCall(DMPlexGetDepthStratum(reference, 1, &eStart, &eEnd));
+  for (PetscInt e = eStart; e < eEnd && side < 0; ++e) {
+    PetscInt parent;
+
+    PetscCall(DMPlexGetTreeParent(reference, e, &parent, NULL));
+    PetscCall(DMPlexGetTreeChildren(reference, e, &nchildren, &children));
+    if (parent == e && nchildren == 3) side = e;
+  }
+  PetscCall(DMPlexGetCone(reference, side, &cone));
+  for (PetscInt i = 0; i < 3; ++i) {
+    const PetscInt *ends;
+    PetscInt        depth;
+
+    PetscCall(DMPlexGetPointDepth(reference, children[i], &depth));
+    if (!depth) {
+      ids[2] = children[i];
+      continue;
+    }
+    PetscCall(DMPlexGetCone(reference, children[i], &ends));
+    ids[ends[0] == cone[0] || ends[1] == cone[0] ? 0 : 1] = children[i];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutForestSetTree_Private(DM dm, const AbutPlexData *data)
+{
+  const PetscInt *child = (const PetscInt *)data->children->array, *parent = (const PetscInt *)data->parents->array, n = (PetscInt)data->children->elem_count;
+  DM              reference;
+  PetscSection    section;
+  PetscInt        pStart, pEnd, reference_ids[3], *ids;
+
+  PetscFunctionBegin;
+  PetscCall(DMPlexCreateDefaultReferenceTree(PetscObjectComm((PetscObject)dm), 2, PETSC_FALSE, &reference));
+  PetscCall(DMPlexSetReferenceTree(dm, reference));
+  PetscCall(AbutForestReferenceIds_Private(reference, reference_ids));
+  PetscCall(DMPlexGetChart(dm, &pStart, &pEnd));
+  PetscCall(PetscSectionCreate(PetscObjectComm((PetscObject)dm), &section));
+  PetscCall(PetscSectionSetChart(section, pStart, pEnd));
+  PetscCall(PetscMalloc1(n, &ids));
+  for (PetscInt i = 0; i < n; ++i) {
+    const PetscInt *side, *ends;
+    PetscInt        depth;
+
+    PetscCall(PetscSectionSetDof(section, child[i], 1));
+    PetscCall(DMPlexGetPointDepth(dm, child[i], &depth));
+    PetscCall(DMPlexGetCone(dm, parent[i], &side));
+    if (depth) PetscCall(DMPlexGetCone(dm, child[i], &ends));
+    ids[i] = reference_ids[!depth ? 2 : (ends[0] == side[0] || ends[1] == side[0] ? 0 : 1)];
+  }
+  PetscCall(PetscSectionSetUp(section));
+  PetscCall(DMPlexSetTree(dm, section, (PetscInt *)data->parents->array, ids));
+  PetscCall(PetscFree(ids));
+  PetscCall(PetscSectionDestroy(&section));
+  PetscCall(DMDestroy(&reference));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutForestSetPointSF_Private(DM dm, const AbutPlexData *data)
+{
+  const PetscInt n = (PetscInt)data->leaves->elem_count;
+  PetscSF        sf;
+  PetscSFNode   *remote;
+  PetscInt       pStart, pEnd;
+  DM             cdm;
+
+  PetscFunctionBegin;
+  PetscCall(DMPlexGetChart(dm, &pStart, &pEnd));
+  PetscCall(PetscMalloc1(n, &remote));
+  for (PetscInt i = 0; i < n; ++i) {
+    const p4est_locidx_t *r = (const p4est_locidx_t *)sc_array_index(data->remotes, (size_t)i);
+
+    remote[i].rank  = r[0];
+    remote[i].index = r[1];
+  }
+  PetscCall(PetscSFCreate(PetscObjectComm((PetscObject)dm), &sf));
+  PetscCall(PetscSFSetGraph(sf, pEnd - pStart, n, (PetscInt *)data->leaves->array, PETSC_COPY_VALUES, remote, PETSC_OWN_POINTER));
+  PetscCall(DMSetPointSF(dm, sf));
+  PetscCall(DMGetCoordinateDM(dm, &cdm));
+  PetscCall(DMSetPointSF(cdm, sf));
+  PetscCall(PetscSFDestroy(&sf));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutForestFillPlex_Private(DM dm, const AbutPlexData *data)
+{
+  const size_t nv          = data->coordinates->elem_count;
+  PetscInt    *orientation = (PetscInt *)data->orientations->array;
+  PetscScalar *xy;
+
+  PetscFunctionBegin;
+  for (size_t i = 0; i < data->orientations->elem_count; ++i)
+    if (orientation[i] == -2) orientation[i] = -1; /* p4est speaks the orientation of PETSc before 3.16 */
+  PetscCall(PetscMalloc1(2 * nv, &xy));
+  for (size_t i = 0; i < nv; ++i)
+    for (int d = 0; d < 2; ++d) xy[2 * i + d] = ((const double *)sc_array_index(data->coordinates, i))[d];
+  PetscCall(DMPlexCreateFromDAG(dm, 2, (PetscInt *)data->points->array, (PetscInt *)data->conesizes->array, (PetscInt *)data->cones->array, orientation, xy));
+  PetscCall(PetscFree(xy));
+  PetscCall(DMPlexSetMaxProjectionHeight(dm, 1));
+  PetscCall(AbutForestSetTree_Private(dm, data));
+  PetscCall(AbutForestSetPointSF_Private(dm, data));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutForestToPlex_Private(AbutMesh mesh, p4est_t *p4est, DM *dm)
+{
+  AbutPlexData   data;
+  sc_array_t   **array[] = {&data.points, &data.conesizes, &data.cones, &data.orientations, &data.coordinates, &data.children, &data.parents, &data.childids, &data.leaves, &data.remotes};
+  p4est_locidx_t first;
+
+  PetscFunctionBegin;
+  for (int i = 0; i < 10; ++i) *array[i] = sc_array_new(i == 4 ? 3 * sizeof(double) : (i == 9 ? 2 * sizeof(p4est_locidx_t) : sizeof(p4est_locidx_t)));
+  p4est_get_plex_data(p4est, P4EST_CONNECT_FULL, 0, &first, data.points, data.conesizes, data.cones, data.orientations, data.coordinates, data.children, data.parents, data.childids,
+                      data.leaves, data.remotes);
+  PetscCall(DMCreate(PetscObjectComm((PetscObject)mesh), dm));
+  PetscCall(DMSetType(*dm, DMPLEX));
+  PetscCall(DMSetDimension(*dm, 2));
+  PetscCall(DMSetCoordinateDim(*dm, 2));
+  PetscCall(AbutForestFillPlex_Private(*dm, &data));
+  for (int i = 0; i < 10; ++i) sc_array_destroy(*array[i]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutMeshCreate_Forest_DM(AbutMesh mesh, DM *dm)
+{
+  AbutMesh_Forest *forest = (AbutMesh_Forest *)mesh->data;
+
+  PetscFunctionBegin;
+  forest->connectivity = p4est_connectivity_new_brick(mesh->cells[0], mesh->cells[1], 0, 0);
+  for (int i = 0; i < forest->connectivity->num_vertices; ++i)
+    for (int d = 0; d < 2; ++d) {
+      double *v = &forest->connectivity->vertices[3 * i + d];
+      *v        = AbutMeshGridLine_Private(mesh, d, (PetscInt)*v);
+    }
+  forest->p4est = p4est_new(PetscObjectComm((PetscObject)mesh), forest->connectivity, 0, NULL, NULL);
+  PetscCall(AbutForestToPlex_Private(mesh, forest->p4est, dm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Local cell c of the DM is the c-th local quadrant */
+static PetscErrorCode AbutMeshGetLevels_Forest(AbutMesh mesh, PetscInt level[])
+{
+  p4est_t *p4est = ((AbutMesh_Forest *)mesh->data)->p4est;
+  PetscInt c     = 0;
+
+  PetscFunctionBegin;
+  for (p4est_topidx_t t = p4est->first_local_tree; t <= p4est->last_local_tree; ++t) {
+    p4est_tree_t *tree = p4est_tree_array_index(p4est->trees, t);
+
+    for (size_t q = 0; q < tree->quadrants.elem_count; ++q) level[c++] = p4est_quadrant_array_index(&tree->quadrants, q)->level;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutMeshRefine_Forest(AbutMesh mesh, const PetscBool marks[], DM *dm)
+{
+  p4est_t *p4est = ((AbutMesh_Forest *)mesh->data)->p4est;
+  PetscInt c     = 0;
+
+  PetscFunctionBegin;
+  for (p4est_topidx_t t = p4est->first_local_tree; t <= p4est->last_local_tree; ++t) {
+    p4est_tree_t *tree = p4est_tree_array_index(p4est->trees, t);
+
+    for (size_t q = 0; q < tree->quadrants.elem_count; ++q) p4est_quadrant_array_index(&tree->quadrants, q)->p.user_int = marks[c++] ? 1 : 0;
+  }
+  p4est_refine(p4est, 0, AbutForestIsMarked_Private, NULL);
+  p4est_balance(p4est, P4EST_CONNECT_FACE, NULL); /* across sides only: the paper's extra rule */
+  p4est_partition(p4est, 0, NULL);
+  PetscCall(AbutForestToPlex_Private(mesh, p4est, dm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutMeshDestroy_Forest(AbutMesh mesh)
+{
+  AbutMesh_Forest *forest = (AbutMesh_Forest *)mesh->data;
+
+  PetscFunctionBegin;
+  if (forest->p4est) p4est_destroy(forest->p4est);
+  if (forest->connectivity) p4est_connectivity_destroy(forest->connectivity);
+  PetscCall(PetscFree(mesh->data));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AbutMeshCreate_Forest(AbutMesh mesh)
+{
+  static PetscBool initialized = PETSC_FALSE;
+  AbutMesh_Forest *forest;
+
+  PetscFunctionBegin;
+  if (!initialized) {
+    initialized = PETSC_TRUE;
+    sc_init(MPI_COMM_NULL, 0, 0, NULL, SC_LP_ERROR);
+    p4est_init(NULL, SC_LP_ERROR);
+  }
+  PetscCall(PetscNew(&forest));
+  mesh->data          = forest;
+  mesh->ops->create    = AbutMeshCreate_Forest_DM;
+  mesh->ops->refine    = AbutMeshRefine_Forest;
+  mesh->ops->getlevels = AbutMeshGetLevels_Forest;
+  mesh->ops->destroy   = AbutMeshDestroy_Forest;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,359 @@
+#include <abut/private/meshimpl.h> /*I "abutmesh.h" I*/
+
+PetscClassId      ABUTMESH_CLASSID;
+PetscLogEvent     ABUTMESH_Adapt;
+const char *const AbutShapes[] = {"quad", "triangle", "AbutShape", "ABUT_", NULL};
+
+static const char *const AbutShapeNames[] = {"quad", "triangle", NULL};
+
+static PetscErrorCode AbutMeshInitializePackage_Private(void)
+{
+  PetscFunctionBegin;
+  if (ABUTMESH_CLASSID) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscClassIdRegister("Abut Mesh", &ABUTMESH_CLASSID));
+  PetscCall(PetscLogEventRegister("AbutMeshAdapt", ABUTMESH_CLASSID, &ABUTMESH_Adapt));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutMeshCreate - Creates an empty mesh
+
+   Collective
+
+   Input Parameter:
+.  comm - the communicator
+
+   Output Parameter:
+.  mesh - the mesh
+
+   Options Database Keys:
++  -mesh_box <x0,y0,x1,y1>     - lower left and upper right corner, in the length unit of the scene
+.  -mesh_cells <nx,ny>         - cells of the first mesh along each direction (triangles: twice as many)
+.  -mesh_shape <quad|triangle> - shape of the cells
+-  -mesh_order <1>             - polynomial order of the displacement
+
+   Level: intermediate
+
+   Note:
+   Limits: plane boxes with sides left, right, bottom, top, order 1.
+
+.seealso: `AbutMeshSetFromOptions()`, `AbutMeshSetBox()`, `AbutMeshAdapt()`, `AbutMeshDestroy()`
+@*/
+PetscErrorCode AbutMeshCreate(MPI_Comm comm, AbutMesh *mesh)
+{
+  PetscFunctionBegin;
+  PetscAssertPointer(mesh, 2);
+  PetscCall(AbutMeshInitializePackage_Private());
+  PetscCall(PetscHeaderCreate(*mesh, ABUTMESH_CLASSID, "AbutMesh", "Mesh of a body", "Mesh", comm, AbutMeshDestroy, AbutMeshView));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutMeshSetBox - Makes the mesh that of a box
+
+   Logically Collective
+
+   Input Parameters:
++  mesh  - the mesh
+.  lower - [2] lower left corner
+.  upper - [2] upper right corner
+.  cells - [2] cells along each direction; a triangle mesh has two triangles in each
+-  shape - `ABUT_QUAD` or `ABUT_TRIANGLE`
+
+   Level: intermediate
+
+.seealso: `AbutMeshSetFromOptions()`, `AbutMeshSetUp()`
+@*/
+PetscErrorCode AbutMeshSetBox(AbutMesh mesh, const PetscReal lower[2], const PetscReal upper[2], const PetscInt cells[2], AbutShape shape)
+{
+  MPI_Comm    comm   = PetscObjectComm((PetscObject)mesh);
+  const char *prefix = ((PetscObject)mesh)->prefix ? ((PetscObject)mesh)->prefix : "";
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(mesh, ABUTMESH_CLASSID, 1);
+  PetscCheck(!mesh->setupcalled, comm, PETSC_ERR_ORDER, "Call AbutMeshSetBox() before AbutMeshSetUp()");
+  AbutCheckInput(lower[0] < upper[0] && lower[1] < upper[1], comm, "%smesh_box: %g,%g,%g,%g has no area; give x0,y0,x1,y1 with x0 < x1 and y0 < y1", prefix, (double)lower[0],
+                 (double)lower[1], (double)upper[0], (double)upper[1]);
+  AbutCheckInput(cells[0] > 0 && cells[1] > 0 && cells[0] <= 1000000 / cells[1] * 100, comm, "%smesh_cells: %" PetscInt_FMT ",%" PetscInt_FMT "; give two numbers from 1 up, at most 1e8 cells in all", prefix, cells[0], cells[1]);
+  for (PetscInt d = 0; d < 2; ++d) {
+    mesh->lower[d] = lower[d];
+    mesh->upper[d] = upper[d];
+    mesh->cells[d] = cells[d];
+  }
+  mesh->shape  = shape;
+  mesh->boxset = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutMeshSetFromOptions - Reads the keys of a mesh
+
+   Collective
+
+   Input Parameter:
+.  mesh - the mesh; its keys are listed under `AbutMeshCreate()`
+
+   Level: intermediate
+
+.seealso: `AbutMeshCreate()`, `AbutMeshSetUp()`
+@*/
+PetscErrorCode AbutMeshSetFromOptions(AbutMesh mesh)
+{
+  const char *prefix = ((PetscObject)mesh)->prefix ? ((PetscObject)mesh)->prefix : "";
+  PetscReal   box[4] = {mesh->lower[0], mesh->lower[1], mesh->upper[0], mesh->upper[1]};
+  PetscInt    cells[2] = {mesh->cells[0], mesh->cells[1]}, shape = mesh->shape, order = 1;
+  PetscBool   hasbox, hascells, hasshape;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(mesh, ABUTMESH_CLASSID, 1);
+  PetscObjectOptionsBegin((PetscObject)mesh);
+  PetscCall(AbutOptionsReals(PetscOptionsObject, "-mesh_box", "x0,y0,x1,y1", 4, box, &hasbox));
+  PetscCall(AbutOptionsInts(PetscOptionsObject, "-mesh_cells", "nx,ny", 2, cells, &hascells));
+  PetscCall(AbutOptionsEnum(PetscOptionsObject, "-mesh_shape", "Shape of the cells", AbutShapeNames, &shape, &hasshape));
+  PetscCall(AbutOptionsInt(PetscOptionsObject, "-mesh_order", "Order of the displacement", &order, NULL));
+  PetscOptionsEnd();
+  AbutCheckInput(order == 1, PetscObjectComm((PetscObject)mesh), "%smesh_order: %" PetscInt_FMT " is not there; give 1", prefix, order);
+  AbutCheckInput(mesh->boxset || (hasbox && hascells), PetscObjectComm((PetscObject)mesh), "%smesh_%s: missing; give %s", prefix, hasbox ? "cells" : "box",
+                 hasbox ? "the cells along each direction, for example 8,2" : "the corners x0,y0,x1,y1 of the box, for example 0,0,4,1");
+  if (hasbox || hascells || hasshape) PetscCall(AbutMeshSetBox(mesh, box, box + 2, cells, (AbutShape)shape));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Takes over a new DM, and makes what is derived from it */
+static PetscErrorCode AbutMeshSetDM_Private(AbutMesh mesh, DM dm)
+{
+  PetscFunctionBegin;
+  PetscCall(AbutMeshTopologyReset_Private(mesh));
+  PetscCall(DMDestroy(&mesh->dm));
+  mesh->dm = dm;
+  PetscCall(AbutMeshTopologyBuild_Private(mesh));
+  PetscCall(AbutMeshSidesBuild_Private(mesh));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutMeshSetUp - Makes the first mesh and distributes it
+
+   Collective
+
+   Input Parameter:
+.  mesh - the mesh
+
+   Level: intermediate
+
+.seealso: `AbutMeshSetBox()`, `AbutMeshAdapt()`, `AbutMeshGetTopology()`
+@*/
+PetscErrorCode AbutMeshSetUp(AbutMesh mesh)
+{
+  DM dm;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(mesh, ABUTMESH_CLASSID, 1);
+  if (mesh->setupcalled) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(mesh->boxset, PetscObjectComm((PetscObject)mesh), PETSC_ERR_ARG_WRONGSTATE, "Call AbutMeshSetBox() or AbutMeshSetFromOptions() first");
+  mesh->setupcalled = PETSC_TRUE;
+  PetscCall((mesh->shape == ABUT_QUAD ? AbutMeshCreate_Forest : AbutMeshCreate_Triangles)(mesh));
+  PetscUseTypeMethod(mesh, create, &dm);
+  PetscCall(AbutMeshSetDM_Private(mesh, dm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutMeshAdapt - Splits the marked cells, and those that must follow, and distributes the new mesh
+
+   Collective
+
+   Input Parameters:
++  mesh  - the mesh
+-  marks - [ncells] the local cells to split
+
+   Level: intermediate
+
+   Notes:
+   Quadrilaterals are split in four and kept 2:1 across sides, which is the paper's extra rule against spurious refinement; triangles are bisected until the mesh conforms.
+   Every array got from the mesh before is no longer valid.
+
+.seealso: `AbutMeshGetTopology()`, `AbutMeshGetGeneration()`, `AbutAdaptorMark()`
+@*/
+PetscErrorCode AbutMeshAdapt(AbutMesh mesh, const PetscBool marks[])
+{
+  DM dm;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(mesh, ABUTMESH_CLASSID, 1);
+  PetscCheck(mesh->setupcalled, PetscObjectComm((PetscObject)mesh), PETSC_ERR_ORDER, "Call AbutMeshSetUp() first");
+  PetscCall(PetscLogEventBegin(ABUTMESH_Adapt, mesh, 0, 0, 0));
+  PetscUseTypeMethod(mesh, refine, marks, &dm);
+  ++mesh->generation;
+  PetscCall(AbutMeshSetDM_Private(mesh, dm));
+  PetscCall(PetscLogEventEnd(ABUTMESH_Adapt, mesh, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutMeshGetGeneration - How often the mesh has been adapted
+
+   Not Collective
+
+   Input Parameter:
+.  mesh - the mesh
+
+   Output Parameter:
+.  generation - 0 for the first mesh
+
+   Level: developer
+
+.seealso: `AbutMeshAdapt()`
+@*/
+PetscErrorCode AbutMeshGetGeneration(AbutMesh mesh, PetscInt *generation)
+{
+  PetscFunctionBegin;
+  *generation = mesh->generation;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutMeshGetDM - The `DMPLEX` of the mesh
+
+   Not Collective
+
+   Input Parameter:
+.  mesh - the mesh
+
+   Output Parameter:
+.  dm - the `DMPLEX`, owned by the mesh; it changes with `AbutMeshAdapt()`
+
+   Level: intermediate
+
+.seealso: `AbutMeshGetTopology()`
+@*/
+PetscErrorCode AbutMeshGetDM(AbutMesh mesh, DM *dm)
+{
+  PetscFunctionBegin;
+  *dm = mesh->dm;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutMeshGetShape - The shape of the cells
+
+   Not Collective
+
+   Input Parameter:
+.  mesh - the mesh
+
+   Output Parameter:
+.  shape - `ABUT_QUAD` or `ABUT_TRIANGLE`
+
+   Level: intermediate
+
+.seealso: `AbutMeshSetBox()`
+@*/
+PetscErrorCode AbutMeshGetShape(AbutMesh mesh, AbutShape *shape)
+{
+  PetscFunctionBegin;
+  *shape = mesh->shape;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutMeshGetBox - The corners of the box
+
+   Not Collective
+
+   Input Parameter:
+.  mesh - the mesh
+
+   Output Parameters:
++  lower - [2] lower left corner
+-  upper - [2] upper right corner
+
+   Level: intermediate
+
+.seealso: `AbutMeshSetBox()`
+@*/
+PetscErrorCode AbutMeshGetBox(AbutMesh mesh, PetscReal lower[2], PetscReal upper[2])
+{
+  PetscFunctionBegin;
+  for (PetscInt d = 0; d < 2; ++d) {
+    lower[d] = mesh->lower[d];
+    upper[d] = mesh->upper[d];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutMeshGetCellCount - Cells of the whole mesh
+
+   Collective
+
+   Input Parameter:
+.  mesh - the mesh
+
+   Output Parameter:
+.  ncells - over all ranks
+
+   Level: beginner
+
+.seealso: `AbutMeshGetTopology()`
+@*/
+PetscErrorCode AbutMeshGetCellCount(AbutMesh mesh, PetscInt *ncells)
+{
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Allreduce(&mesh->topology.ncells, ncells, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)mesh)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutMeshView - Prints a mesh: shape, box, cells, levels
+
+   Collective
+
+   Input Parameters:
++  mesh   - the mesh
+-  viewer - the viewer
+
+   Level: intermediate
+
+.seealso: `AbutMeshCreate()`
+@*/
+PetscErrorCode AbutMeshView(AbutMesh mesh, PetscViewer viewer)
+{
+  AbutMeshMeasures m;
+  PetscInt         ncells;
+
+  PetscFunctionBegin;
+  PetscCall(AbutMeshGetCellCount(mesh, &ncells));
+  PetscCall(AbutMeshGetMeasures(mesh, &m));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "mesh: %s, %" PetscInt_FMT " cells, %" PetscInt_FMT " vertices with unknowns, levels up to %" PetscInt_FMT ", smallest side %g\n",
+                                   AbutShapeNames[mesh->shape], ncells, mesh->topology.nglobal, m.level_max, (double)m.h_min));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutMeshDestroy - Frees a mesh
+
+   Collective
+
+   Input Parameter:
+.  mesh - the mesh; set to `NULL`
+
+   Level: intermediate
+
+.seealso: `AbutMeshCreate()`
+@*/
+PetscErrorCode AbutMeshDestroy(AbutMesh *mesh)
+{
+  PetscFunctionBegin;
+  if (!*mesh) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscValidHeaderSpecific(*mesh, ABUTMESH_CLASSID, 1);
+  if (--((PetscObject)*mesh)->refct > 0) {
+    *mesh = NULL;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(AbutMeshTopologyReset_Private(*mesh));
+  PetscCall(DMDestroy(&(*mesh)->dm));
+  PetscTryTypeMethod(*mesh, destroy);
+  PetscCall(PetscHeaderDestroy(mesh));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,165 @@
+#include <abut/private/pairimpl.h> /*I "abutpair.h" I*/
+
+/*@C
+   AbutPairGetGap - The gap f at a point of the pressure side
+
+   Not Collective
+
+   Input Parameters:
++  pair - the pair
+-  x    - [2] the point
+
+   Output Parameter:
+.  gap - f, length; without `-NAME_pair_gap` the distance of the sides
+
+   Level: intermediate
+
+.seealso: `AbutPairComputePressure()`
+@*/
+PetscErrorCode AbutPairGetGap(AbutPair pair, const PetscReal x[2], PetscReal *gap)
+{
+  AbutMesh  mesh;
+  PetscReal ends[2][4], normal[2][2];
+
+  PetscFunctionBegin;
+  if (pair->gap) {
+    PetscCall(AbutExpressionEvaluate(pair->gap, x, gap));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  for (PetscInt s = 0; s < 2; ++s) {
+    PetscCall(AbutBodyGetMesh(pair->body[s], &mesh));
+    PetscCall(AbutMeshGetSideEnds(mesh, pair->side[s], ends[s], normal[s]));
+  }
+  *gap = (ends[1][0] - ends[0][0]) * normal[0][0] + (ends[1][1] - ends[0][1]) * normal[0][1];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutPairComputePressure - Nodal pressures of the penalty law, p = max(0, u_n1 + u_n2 - f)/theta, for given traces: eqs. (15), (20) of the paper
+
+   Not Collective
+
+   Input Parameters:
++  pair - the pair, set up
+.  u1   - [n1] normal displacements at the nodes of the first side, length
+-  u2   - [n2] the same on the second side
+
+   Output Parameter:
+.  p - [nodes of the pressure side] pressures, stress; 0 at nodes that carry none
+
+   Level: intermediate
+
+.seealso: `AbutPairComputeForce()`, `AbutPairGetPressureNodes()`
+@*/
+PetscErrorCode AbutPairComputePressure(AbutPair pair, const PetscReal u1[], const PetscReal u2[], PetscReal p[])
+{
+  const PetscReal *const u[2] = {u1, u2};
+
+  PetscFunctionBegin;
+  PetscCall(AbutPairPenetration_Private(pair, u, p));
+  for (PetscInt i = 0; i < pair->n[pair->which]; ++i) p[i] = PetscMax(0., p[i]) / pair->theta;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutPairComputeForce - Nodal normal forces on both sides of nodal pressures, the pressing direction positive
+
+   Not Collective
+
+   Input Parameters:
++  pair - the pair, set up
+-  p    - [nodes of the pressure side] pressures, stress
+
+   Output Parameters:
++  f1 - [n1] integrals of the pressure against the hat functions of the first side, stress times length
+-  f2 - [n2] the same on the second side
+
+   Level: intermediate
+
+.seealso: `AbutPairComputePressure()`
+@*/
+PetscErrorCode AbutPairComputeForce(AbutPair pair, const PetscReal p[], PetscReal f1[], PetscReal f2[])
+{
+  PetscReal *const f[2]     = {f1, f2};
+  PetscReal *const force[2] = {f[pair->which], f[!pair->which]};
+
+  PetscFunctionBegin;
+  for (PetscInt s = 0; s < 2; ++s)
+    for (PetscInt i = 0; i < pair->n[s]; ++i) f[s][i] = 0.;
+  for (PetscInt g = 0; g < pair->nsegments; ++g) {
+    const AbutSegment *seg = &pair->segment[g];
+
+    for (PetscInt i = 0; i < 2; ++i)
+      for (PetscInt side = 0; side < 2; ++side)
+        for (PetscInt j = 0; j < 2; ++j) force[side][seg->element[side] + j] += seg->M[side][i][j] * p[seg->element[0] + i];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutPairComputeWinkler - Traces of two elastic layers on their supports, p = max(0, approach - f)/(theta + C1 + C2): the paper's start
+
+   Not Collective
+
+   Input Parameter:
+.  pair - the pair, set up
+
+   Output Parameters:
++  u1    - [n1] normal displacements at the nodes of the first side, length
+.  u2    - [n2] the same on the second side
+-  found - `PETSC_FALSE` where a body has no support with prescribed displacement opposite to its side; u1, u2 are then not set
+
+   Level: intermediate
+
+.seealso: `AbutInterfaceComputeStart()`, `AbutPairGetCompliance()`
+@*/
+PetscErrorCode AbutPairComputeWinkler(AbutPair pair, PetscReal u1[], PetscReal u2[], PetscBool *found)
+{
+  PetscReal *const u[2] = {u1, u2};
+  PetscReal        compliance[2];
+
+  PetscFunctionBegin;
+  PetscCall(AbutPairGetCompliance(pair, compliance));
+  for (PetscInt s = 0; s < 2; ++s)
+    for (PetscInt i = 0; i < pair->n[s]; ++i) {
+      const PetscReal *x = pair->nodes[s]->x + 2 * i;
+      PetscReal        base[2], f, p;
+
+      for (PetscInt b = 0; b < 2; ++b) {
+        PetscCall(AbutBodyGetSupportDisplacement(pair->body[b], x, pair->nodes[b]->normal, &base[b], found));
+        if (!*found) PetscFunctionReturn(PETSC_SUCCESS);
+      }
+      PetscCall(AbutPairGetGap(pair, x, &f));
+      p       = PetscMax(0., base[0] + base[1] - f) / (pair->theta + compliance[0] + compliance[1]);
+      u[s][i] = base[s] - p * compliance[s];
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutPairGetPressureNodes - The nodes that carry pressures
+
+   Not Collective
+
+   Input Parameter:
+.  pair - the pair, set up
+
+   Output Parameters:
++  which - 0 or 1: the side that carries them
+.  n     - its nodes
+.  x     - [2*n] their coordinates
+-  D     - [n] integrals of their dual functions, length; 0 where a node carries no pressure
+
+   Level: intermediate
+
+.seealso: `AbutPairComputePressure()`
+@*/
+PetscErrorCode AbutPairGetPressureNodes(AbutPair pair, PetscInt *which, PetscInt *n, const PetscReal *x[], const PetscReal *D[])
+{
+  PetscFunctionBegin;
+  *which = pair->which;
+  *n     = pair->n[pair->which];
+  *x     = pair->nodes[pair->which]->x;
+  *D     = pair->D;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

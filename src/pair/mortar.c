@@ -1,0 +1,163 @@
+#include <abut/private/pairimpl.h> /*I "abutpair.h" I*/
+#include <petscdt.h>
+
+/* Dual-mortar weights on the common refinement of the two sides. One-sided quadrature would fail the contact patch test by some per cent. */
+
+/* Coordinate of every node along the straight pressure side, 0 at its first node */
+static PetscErrorCode AbutPairProject_Private(AbutPair pair, PetscReal *s[2], PetscReal tangent[2])
+{
+  const AbutSide *m = pair->nodes[pair->which];
+  PetscReal       length;
+
+  PetscFunctionBegin;
+  for (PetscInt d = 0; d < 2; ++d) tangent[d] = m->x[2 * (m->n - 1) + d] - m->x[d];
+  length = PetscSqrtReal(tangent[0] * tangent[0] + tangent[1] * tangent[1]);
+  for (PetscInt d = 0; d < 2; ++d) tangent[d] /= length;
+  for (PetscInt k = 0; k < 2; ++k) {
+    const AbutSide *side = pair->nodes[k ? !pair->which : pair->which];
+
+    PetscCall(PetscMalloc1(side->n, &s[k]));
+    for (PetscInt i = 0; i < side->n; ++i) s[k][i] = (side->x[2 * i] - m->x[0]) * tangent[0] + (side->x[2 * i + 1] - m->x[1]) * tangent[1];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscInt AbutPairCountWithin_Private(PetscInt n, const PetscReal s[], PetscReal from, PetscReal to)
+{
+  PetscInt count = 0;
+
+  for (PetscInt i = 0; i < n; ++i)
+    if (s[i] >= from && s[i] <= to) ++count;
+  return count;
+}
+
+/* The side with more nodes on the common part carries the pressures, the first one if equal */
+static void AbutPairChoosePressureSide_Private(AbutPair pair)
+{
+  PetscInt count[2] = {0, 0};
+
+  pair->which = pair->pressureside == ABUT_PRESSURE_SECOND;
+  if (pair->pressureside != ABUT_PRESSURE_FINER) return;
+  for (PetscInt k = 0; k < 2; ++k) {
+    const AbutSide *own = pair->nodes[k], *other = pair->nodes[!k];
+    PetscReal       box[4] = {PETSC_MAX_REAL, PETSC_MAX_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL};
+    const PetscInt  d      = PetscAbsReal(own->normal[0]) > PetscAbsReal(own->normal[1]) ? 1 : 0; /* the coordinate that runs along the side */
+
+    for (PetscInt i = 0; i < other->n; ++i) {
+      box[d]     = PetscMin(box[d], other->x[2 * i + d]);
+      box[2 + d] = PetscMax(box[2 + d], other->x[2 * i + d]);
+    }
+    for (PetscInt i = 0; i < own->n; ++i)
+      if (AbutPairCountWithin_Private(1, own->x + 2 * i + d, box[d], box[2 + d])) ++count[k];
+  }
+  pair->which = count[1] > count[0];
+}
+
+/* The dual functions psi_i = sum_j A[i][j] phi_j of one element on its overlap [l,r] (in [0,1]) with the other side, biorthogonal there:
+   A = diag(D) M^-1. Beside a node that carries no pressure the other node's function is 1, so that constants stay in the space. */
+static void AbutPairDual_Private(PetscReal l, PetscReal r, const PetscBool carries[2], PetscReal A[2][2])
+{
+  const PetscReal m0 = r - l, m1 = 0.5 * (r * r - l * l), m2 = (r * r * r - l * l * l) / 3.; /* moments of 1, z, z^2 */
+  const PetscReal D[2] = {m0 - m1, m1}, M[3] = {m0 - 2. * m1 + m2, m1 - m2, m2}, det = M[0] * M[2] - M[1] * M[1];
+
+  for (PetscInt i = 0; i < 2; ++i)
+    for (PetscInt j = 0; j < 2; ++j) A[i][j] = carries[i] ? 1. : 0.;
+  if (!carries[0] || !carries[1]) return;
+  A[0][0] = D[0] * M[2] / det;
+  A[0][1] = -D[0] * M[1] / det;
+  A[1][0] = -D[1] * M[1] / det;
+  A[1][1] = D[1] * M[0] / det;
+}
+
+/* Integrals over one piece [from,to] (along the side) of the elements e of the pressure side and k of the other */
+static PetscErrorCode AbutPairSegment_Private(AbutPair pair, PetscReal *const s[2], const PetscReal tangent[2], PetscInt e, PetscInt k, const PetscReal A[2][2], PetscReal from, PetscReal to)
+{
+  static const PetscReal z[4] = {-0.86113631159405258, -0.33998104358485626, 0.33998104358485626, 0.86113631159405258};
+  static const PetscReal w[4] = {0.34785484513745386, 0.65214515486254614, 0.65214515486254614, 0.34785484513745386};
+  const AbutSide        *m    = pair->nodes[pair->which];
+  AbutSegment           *g    = &pair->segment[pair->nsegments++];
+
+  PetscFunctionBegin;
+  PetscCall(PetscMemzero(g, sizeof(*g)));
+  g->element[0] = e;
+  g->element[1] = k;
+  for (PetscInt q = 0; q < 4; ++q) {
+    const PetscReal at = 0.5 * (from + to) + 0.5 * z[q] * (to - from), dw = 0.5 * w[q] * (to - from), x[2] = {m->x[0] + at * tangent[0], m->x[1] + at * tangent[1]};
+    const PetscReal own = (at - s[0][e]) / (s[0][e + 1] - s[0][e]), other = (at - s[1][k]) / (s[1][k + 1] - s[1][k]), phi[2][2] = {{1. - own, own}, {1. - other, other}};
+    PetscReal       f;
+
+    PetscCall(AbutPairGetGap(pair, x, &f));
+    for (PetscInt i = 0; i < 2; ++i) {
+      const PetscReal psi = dw * (A[i][0] * phi[0][0] + A[i][1] * phi[0][1]);
+
+      pair->D[e + i] += psi;
+      pair->F[e + i] += psi * f;
+      for (PetscInt side = 0; side < 2; ++side)
+        for (PetscInt j = 0; j < 2; ++j) g->M[side][i][j] += psi * phi[side][j];
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The sides run against each other, so elements of the other one are met from its end */
+PetscErrorCode AbutPairMortar_Private(AbutPair pair)
+{
+  PetscReal      *s[2], tangent[2], low, high;
+  const AbutSide *m, *o;
+  PetscInt        k;
+
+  PetscFunctionBegin;
+  AbutPairChoosePressureSide_Private(pair);
+  m = pair->nodes[pair->which];
+  o = pair->nodes[!pair->which];
+  PetscCall(AbutPairProject_Private(pair, s, tangent));
+  PetscCall(PetscMalloc1(m->n + o->n, &pair->segment));
+  PetscCall(PetscCalloc3(m->n, &pair->D, m->n, &pair->F, m->n, &pair->work));
+  low  = s[1][o->n - 1];
+  high = s[1][0];
+  k    = o->n - 2;
+  for (PetscInt e = 0; e + 1 < m->n; ++e) {
+    const PetscReal h = s[0][e + 1] - s[0][e], from = PetscMax(s[0][e], low), to = PetscMin(s[0][e + 1], high);
+    const PetscBool carries[2] = {(PetscBool)!m->fixed[e], (PetscBool)!m->fixed[e + 1]};
+    PetscReal       A[2][2];
+
+    if (to - from < 1e-9 * h) continue;
+    AbutPairDual_Private((from - s[0][e]) / h, (to - s[0][e]) / h, carries, A);
+    while (k > 0 && s[1][k] <= from + 1e-12 * h) --k;
+    for (PetscInt j = k; j >= 0 && s[1][j + 1] < to; --j) { /* element j of the other side covers [s[1][j+1], s[1][j]] */
+      const PetscReal a = PetscMax(from, s[1][j + 1]), b = PetscMin(to, s[1][j]);
+
+      if (b - a > 1e-12 * h) PetscCall(AbutPairSegment_Private(pair, s, tangent, e, j, A, a, b));
+    }
+  }
+  for (PetscInt i = 0; i < 2; ++i) PetscCall(PetscFree(s[i]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AbutPairMortarReset_Private(AbutPair pair)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree(pair->segment));
+  PetscCall(PetscFree3(pair->D, pair->F, pair->work));
+  pair->nsegments = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Averaged nodal penetrations (u_n1 + u_n2 - f) tested with the dual functions over D_i; u[0], u[1] the traces of the two sides of the pair */
+PetscErrorCode AbutPairPenetration_Private(AbutPair pair, const PetscReal *const u[2], PetscReal penetration[])
+{
+  const PetscReal *trace[2] = {u[pair->which], u[!pair->which]};
+  const PetscInt   n        = pair->n[pair->which];
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < n; ++i) penetration[i] = -pair->F[i];
+  for (PetscInt g = 0; g < pair->nsegments; ++g) {
+    const AbutSegment *seg = &pair->segment[g];
+
+    for (PetscInt i = 0; i < 2; ++i)
+      for (PetscInt side = 0; side < 2; ++side)
+        for (PetscInt j = 0; j < 2; ++j) penetration[seg->element[0] + i] += seg->M[side][i][j] * trace[side][seg->element[side] + j];
+  }
+  for (PetscInt i = 0; i < n; ++i) penetration[i] = pair->D[i] > 0. ? penetration[i] / pair->D[i] : 0.;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

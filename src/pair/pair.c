@@ -1,0 +1,417 @@
+#include <abut/private/pairimpl.h> /*I "abutpair.h" I*/
+
+PetscClassId ABUTPAIR_CLASSID;
+
+static const char *const AbutPressureSideNames[] = {"first", "second", "finer", NULL};
+
+/*@C
+   AbutPairCreate - Creates a pair: one possible contact of two sides
+
+   Collective
+
+   Input Parameters:
++  comm - the communicator of its bodies
+-  name - its name; its keys begin with it: `-mid_pair_gap`
+
+   Output Parameter:
+.  pair - the pair
+
+   Options Database Keys:
++  -NAME_pair_bodies <first,second> - names of the two bodies; E and H of the first give theta
+.  -NAME_pair_sides <first,second>  - their sides
+.  -NAME_pair_gap <f>               - gap as number, formula in x and y, or CSV file, length; default: the distance of the sides
+.  -NAME_pair_penalty <c>           - theta = c H/E, default 0.05
+.  -NAME_pair_theta <theta>         - theta itself, length/stress
+.  -NAME_pair_height <H>            - H, where it is not the extent of the first body along the normal, length
+-  -NAME_pair_pressure_side <first|second|finer> - which side carries the nodal pressures
+
+   Level: intermediate
+
+   Note:
+   Limits: straight sides, frictionless, small displacements (the pairing of the sides is fixed), penalty form (theta > 0).
+
+.seealso: `AbutPairSetFromOptions()`, `AbutPairSetUp()`, `AbutPairDestroy()`
+@*/
+PetscErrorCode AbutPairCreate(MPI_Comm comm, const char name[], AbutPair *pair)
+{
+  char prefix[128];
+
+  PetscFunctionBegin;
+  PetscAssertPointer(pair, 3);
+  if (!ABUTPAIR_CLASSID) PetscCall(PetscClassIdRegister("Abut Pair", &ABUTPAIR_CLASSID));
+  PetscCall(PetscHeaderCreate(*pair, ABUTPAIR_CLASSID, "AbutPair", "Contact of two sides", "Pair", comm, AbutPairDestroy, AbutPairView));
+  PetscCall(PetscObjectSetName((PetscObject)*pair, name));
+  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", name));
+  PetscCall(PetscObjectSetOptionsPrefix((PetscObject)*pair, prefix));
+  (*pair)->penalty       = 0.05;
+  (*pair)->pressureside  = ABUT_PRESSURE_FINER;
+  (*pair)->generation[0] = (*pair)->generation[1] = -1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* "a,b" -> two words */
+static PetscErrorCode AbutPairSplit_Private(AbutPair pair, const char key[], const char text[], char first[], char second[], size_t len)
+{
+  const char *comma = strchr(text, ',');
+
+  PetscFunctionBegin;
+  AbutCheckInput(comma && !strchr(comma + 1, ',') && comma != text && comma[1], PetscObjectComm((PetscObject)pair), "%s_pair_%s: \"%s\" is not two names; give them with a comma between, for example %s",
+                 ((PetscObject)pair)->name, key, text, key[0] == 'b' ? "upper,lower" : "bottom,top");
+  PetscCall(PetscStrncpy(first, text, PetscMin(len, (size_t)(comma - text) + 1)));
+  while (*++comma == ' ') { }
+  PetscCall(PetscStrncpy(second, comma, len));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutPairFindBodies_Private(AbutPair pair, const char text[], PetscInt nbodies, AbutBody bodies[])
+{
+  char      names[2][128], all[512] = "";
+  PetscBool match;
+
+  PetscFunctionBegin;
+  PetscCall(AbutPairSplit_Private(pair, "bodies", text, names[0], names[1], sizeof(names[0])));
+  for (PetscInt i = 0; i < nbodies; ++i) {
+    PetscCall(PetscStrlcat(all, i ? ", " : "", sizeof(all)));
+    PetscCall(PetscStrlcat(all, ((PetscObject)bodies[i])->name, sizeof(all)));
+  }
+  for (PetscInt s = 0; s < 2; ++s) {
+    pair->body[s] = NULL;
+    for (PetscInt i = 0; i < nbodies; ++i) {
+      PetscCall(PetscStrcasecmp(names[s], ((PetscObject)bodies[i])->name, &match));
+      if (match) pair->body[s] = bodies[i];
+    }
+    AbutCheckInput(pair->body[s], PetscObjectComm((PetscObject)pair), "%s_pair_bodies: the scene has no body \"%s\"; give two of: %s", ((PetscObject)pair)->name, names[s], all);
+  }
+  AbutCheckInput(pair->body[0] != pair->body[1], PetscObjectComm((PetscObject)pair), "%s_pair_bodies: both are \"%s\"; give two different bodies of: %s", ((PetscObject)pair)->name, names[0], all);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The two sides must lie against each other: opposite normals, a common part, and a distance that is small, or none where the gap is given */
+static PetscErrorCode AbutPairCheckFacing_Private(AbutPair pair)
+{
+  MPI_Comm    comm = PetscObjectComm((PetscObject)pair);
+  const char *name = ((PetscObject)pair)->name, *body[2];
+  PetscReal   ends[2][4], normal[2][2], tangent[2], from[2], to[2], length, distance, common;
+
+  PetscFunctionBegin;
+  for (PetscInt s = 0; s < 2; ++s) {
+    AbutMesh mesh;
+
+    PetscCall(AbutBodyGetName(pair->body[s], &body[s]));
+    PetscCall(AbutBodyGetMesh(pair->body[s], &mesh));
+    PetscCall(AbutMeshGetSideEnds(mesh, pair->side[s], ends[s], normal[s]));
+  }
+  for (PetscInt d = 0; d < 2; ++d) tangent[d] = ends[0][2 + d] - ends[0][d];
+  length = PetscSqrtReal(tangent[0] * tangent[0] + tangent[1] * tangent[1]);
+  for (PetscInt s = 0; s < 2; ++s) {
+    const PetscReal a = (ends[s][0] * tangent[0] + ends[s][1] * tangent[1]) / length, b = (ends[s][2] * tangent[0] + ends[s][3] * tangent[1]) / length;
+
+    from[s] = PetscMin(a, b);
+    to[s]   = PetscMax(a, b);
+  }
+  common   = PetscMin(to[0], to[1]) - PetscMax(from[0], from[1]);
+  distance = (ends[1][0] - ends[0][0]) * normal[0][0] + (ends[1][1] - ends[0][1]) * normal[0][1];
+  AbutCheckInput(normal[0][0] * normal[1][0] + normal[0][1] * normal[1][1] < -0.999 && common > 1e-9 * length && PetscAbsReal(distance) < 0.1 * length, comm,
+                 "%s_pair_sides: bodies \"%s\" and \"%s\" share no part of these sides (distance %g); give sides that lie against each other, for example bottom,top", name, body[0], body[1], (double)distance);
+  AbutCheckInput(!pair->gap || PetscAbsReal(distance) < 1e-6 * length, comm, "%s_pair_gap: given, but the sides of \"%s\" and \"%s\" are %g apart; bring the boxes together, or leave the gap out to use this distance",
+                 name, body[0], body[1], (double)distance);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutPairSetTheta_Private(AbutPair pair)
+{
+  MPI_Comm    comm = PetscObjectComm((PetscObject)pair);
+  const char *name = ((PetscObject)pair)->name;
+  AbutMesh    mesh;
+  PetscReal   young, poisson, ends[4], normal[2];
+
+  PetscFunctionBegin;
+  PetscCall(AbutBodyGetMesh(pair->body[0], &mesh));
+  PetscCall(AbutMeshGetSideEnds(mesh, pair->side[0], ends, normal));
+  if (pair->height <= 0.) PetscCall(AbutBodyGetHeight(pair->body[0], normal, &pair->height));
+  PetscCall(AbutBodyGetMaterial(pair->body[0], &young, &poisson));
+  if (!pair->thetaset) pair->theta = pair->penalty * pair->height / young;
+  AbutCheckInput(pair->theta > 0., comm, "%s_pair_%s: %g; the penalty form needs a positive one, for example %s", name, pair->thetaset ? "theta" : "penalty",
+                 (double)(pair->thetaset ? pair->theta : pair->penalty), pair->thetaset ? "2.4e-7" : "0.05");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutPairSetFromOptions - Reads the keys of a pair
+
+   Collective
+
+   Input Parameters:
++  pair    - the pair; its keys are listed under `AbutPairCreate()`
+.  nbodies - bodies of the scene
+-  bodies  - [nbodies] the bodies, which have read their keys
+
+   Level: intermediate
+
+.seealso: `AbutPairCreate()`, `AbutPairSetUp()`
+@*/
+PetscErrorCode AbutPairSetFromOptions(AbutPair pair, PetscInt nbodies, AbutBody bodies[])
+{
+  MPI_Comm    comm = PetscObjectComm((PetscObject)pair);
+  const char *name = ((PetscObject)pair)->name;
+  char        text[3][PETSC_MAX_PATH_LEN] = {"", "", ""}, names[2][128], key[256];
+  PetscBool   set[3], heightset;
+  PetscInt    pressureside = pair->pressureside;
+
+  PetscFunctionBegin;
+  PetscObjectOptionsBegin((PetscObject)pair);
+  PetscCall(AbutOptionsString(PetscOptionsObject, "-pair_bodies", "Names of the two bodies", text[0], sizeof(text[0]), &set[0]));
+  PetscCall(AbutOptionsString(PetscOptionsObject, "-pair_sides", "Their sides", text[1], sizeof(text[1]), &set[1]));
+  PetscCall(AbutOptionsString(PetscOptionsObject, "-pair_gap", "Gap", text[2], sizeof(text[2]), &set[2]));
+  PetscCall(AbutOptionsReal(PetscOptionsObject, "-pair_penalty", "c of theta = c H/E", &pair->penalty, NULL));
+  PetscCall(AbutOptionsReal(PetscOptionsObject, "-pair_theta", "theta", &pair->theta, &pair->thetaset));
+  PetscCall(AbutOptionsReal(PetscOptionsObject, "-pair_height", "H of theta = c H/E", &pair->height, &heightset));
+  PetscCall(AbutOptionsEnum(PetscOptionsObject, "-pair_pressure_side", "Which side carries the pressures", AbutPressureSideNames, &pressureside, NULL));
+  PetscOptionsEnd();
+  pair->pressureside = (AbutPressureSide)pressureside;
+  AbutCheckInput(set[0], comm, "%s_pair_bodies: missing; give the names of two bodies, for example upper,lower", name);
+  AbutCheckInput(set[1], comm, "%s_pair_sides: missing; give a side of each body, for example bottom,top", name);
+  AbutCheckInput(!heightset || pair->height > 0., comm, "%s_pair_height: %g is not a length; give a positive number", name, (double)pair->height);
+  PetscCall(AbutPairFindBodies_Private(pair, text[0], nbodies, bodies));
+  PetscCall(AbutPairSplit_Private(pair, "sides", text[1], names[0], names[1], sizeof(names[0])));
+  PetscCall(PetscSNPrintf(key, sizeof(key), "%s_pair_sides", name));
+  for (PetscInt s = 0; s < 2; ++s) {
+    AbutMesh mesh;
+
+    PetscCall(AbutBodyGetMesh(pair->body[s], &mesh));
+    PetscCall(AbutMeshFindSide(mesh, key, names[s], &pair->side[s]));
+    PetscCall(AbutBodySetContact(pair->body[s], pair->side[s]));
+  }
+  PetscCall(PetscSNPrintf(key, sizeof(key), "%s_pair_gap", name));
+  if (set[2]) PetscCall(AbutExpressionCreate(comm, key, text[2], &pair->gap));
+  PetscCall(AbutPairCheckFacing_Private(pair));
+  PetscCall(AbutPairSetTheta_Private(pair));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutPairSetUp - Makes the common refinement and the dual-mortar weights; after a body's mesh has adapted, makes them anew
+
+   Collective
+
+   Input Parameter:
+.  pair - the pair
+
+   Level: intermediate
+
+.seealso: `AbutPairSetFromOptions()`, `AbutPairComputePressure()`
+@*/
+PetscErrorCode AbutPairSetUp(AbutPair pair)
+{
+  PetscInt  generation[2];
+  PetscBool same = PETSC_TRUE;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(pair, ABUTPAIR_CLASSID, 1);
+  for (PetscInt s = 0; s < 2; ++s) {
+    AbutMesh mesh;
+
+    PetscCall(AbutBodySetUp(pair->body[s]));
+    PetscCall(AbutBodyGetMesh(pair->body[s], &mesh));
+    PetscCall(AbutMeshGetGeneration(mesh, &generation[s]));
+    if (generation[s] != pair->generation[s]) same = PETSC_FALSE;
+  }
+  if (same) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AbutPairMortarReset_Private(pair));
+  for (PetscInt s = 0; s < 2; ++s) {
+    pair->generation[s] = generation[s];
+    PetscCall(AbutBodyGetSide(pair->body[s], pair->side[s], &pair->nodes[s]));
+    pair->n[s] = pair->nodes[s]->n;
+  }
+  PetscCall(AbutPairMortar_Private(pair));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutPairView - Prints a pair
+
+   Collective
+
+   Input Parameters:
++  pair   - the pair
+-  viewer - the viewer
+
+   Level: intermediate
+
+.seealso: `AbutPairCreate()`
+@*/
+PetscErrorCode AbutPairView(AbutPair pair, PetscViewer viewer)
+{
+  const char *gap = "the distance of the sides", *body[2], *side[2];
+
+  PetscFunctionBegin;
+  if (pair->gap) PetscCall(AbutExpressionGetText(pair->gap, &gap));
+  for (PetscInt s = 0; s < 2; ++s) {
+    AbutMesh mesh;
+
+    PetscCall(AbutBodyGetName(pair->body[s], &body[s]));
+    PetscCall(AbutBodyGetMesh(pair->body[s], &mesh));
+    PetscCall(AbutMeshGetSideName(mesh, pair->side[s], &side[s]));
+  }
+  PetscCall(PetscViewerASCIIPrintf(viewer, "pair %s: %s of %s on %s of %s, gap %s, theta %g\n", ((PetscObject)pair)->name, side[0], body[0], side[1], body[1], gap, (double)pair->theta));
+  if (pair->segment) {
+    PetscCall(PetscViewerASCIIPushTab(viewer));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "%" PetscInt_FMT " and %" PetscInt_FMT " nodes, %" PetscInt_FMT " pieces in the common refinement, pressures on %s\n", pair->n[0], pair->n[1], pair->nsegments, body[pair->which]));
+    PetscCall(PetscViewerASCIIPopTab(viewer));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutPairDestroy - Frees a pair
+
+   Collective
+
+   Input Parameter:
+.  pair - the pair; set to `NULL`
+
+   Level: intermediate
+
+.seealso: `AbutPairCreate()`
+@*/
+PetscErrorCode AbutPairDestroy(AbutPair *pair)
+{
+  PetscFunctionBegin;
+  if (!*pair) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscValidHeaderSpecific(*pair, ABUTPAIR_CLASSID, 1);
+  if (--((PetscObject)*pair)->refct > 0) {
+    *pair = NULL;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(AbutPairMortarReset_Private(*pair));
+  PetscCall(AbutExpressionDestroy(&(*pair)->gap));
+  PetscCall(PetscHeaderDestroy(pair));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutPairGetName - The name of a pair
+
+   Not Collective
+
+   Input Parameter:
+.  pair - the pair
+
+   Output Parameter:
+.  name - its name, owned by the pair
+
+   Level: intermediate
+
+.seealso: `AbutPairCreate()`
+@*/
+PetscErrorCode AbutPairGetName(AbutPair pair, const char *name[])
+{
+  PetscFunctionBegin;
+  *name = ((PetscObject)pair)->name;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutPairGetBodies - The bodies and sides of a pair
+
+   Not Collective
+
+   Input Parameter:
+.  pair - the pair
+
+   Output Parameters:
++  bodies - [2] the bodies
+-  sides  - [2] the numbers of their sides
+
+   Level: intermediate
+
+.seealso: `AbutPairGetSizes()`
+@*/
+PetscErrorCode AbutPairGetBodies(AbutPair pair, AbutBody bodies[2], PetscInt sides[2])
+{
+  PetscFunctionBegin;
+  for (PetscInt s = 0; s < 2; ++s) {
+    bodies[s] = pair->body[s];
+    sides[s]  = pair->side[s];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutPairGetSizes - How many nodes the two sides have
+
+   Not Collective
+
+   Input Parameter:
+.  pair - the pair, set up
+
+   Output Parameter:
+.  n - [2] nodes
+
+   Level: intermediate
+
+.seealso: `AbutPairGetBodies()`
+@*/
+PetscErrorCode AbutPairGetSizes(AbutPair pair, PetscInt n[2])
+{
+  PetscFunctionBegin;
+  n[0] = pair->n[0];
+  n[1] = pair->n[1];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutPairGetTheta - The penalty parameter theta = c H/E of eq. (15) of the paper
+
+   Not Collective
+
+   Input Parameter:
+.  pair - the pair
+
+   Output Parameter:
+.  theta - length/stress
+
+   Level: intermediate
+
+.seealso: `AbutPairGetCompliance()`
+@*/
+PetscErrorCode AbutPairGetTheta(AbutPair pair, PetscReal *theta)
+{
+  PetscFunctionBegin;
+  *theta = pair->theta;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutPairGetCompliance - H (1-nu^2)/E of the two bodies: how much a layer of a body's height gives under a unit pressure
+
+   Not Collective
+
+   Input Parameter:
+.  pair - the pair
+
+   Output Parameter:
+.  compliance - [2] length/stress
+
+   Level: intermediate
+
+   Note:
+   Their sum C bounds the spectrum of a sweep: relaxation converges for gamma < 2/(1+C/theta).
+
+.seealso: `AbutPairGetTheta()`, `AbutInterfaceGetGamma()`
+@*/
+PetscErrorCode AbutPairGetCompliance(AbutPair pair, PetscReal compliance[2])
+{
+  PetscFunctionBegin;
+  for (PetscInt s = 0; s < 2; ++s) {
+    AbutMesh  mesh;
+    PetscReal ends[4], normal[2], height, young, poisson;
+
+    PetscCall(AbutBodyGetMesh(pair->body[s], &mesh));
+    PetscCall(AbutMeshGetSideEnds(mesh, pair->side[s], ends, normal));
+    PetscCall(AbutBodyGetHeight(pair->body[s], normal, &height));
+    PetscCall(AbutBodyGetMaterial(pair->body[s], &young, &poisson));
+    compliance[s] = height * (1. - poisson * poisson) / young;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

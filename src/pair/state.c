@@ -1,0 +1,88 @@
+#include <abut/private/pairimpl.h> /*I "abutpair.h" I*/
+
+/* Where the penetration changes sign. In contact at an end of the side (a symmetric half model): distance from that end; else half the distance of the two edges. */
+static PetscReal AbutPairEdge_Private(AbutPair pair, const PetscReal g[], const PetscReal p[])
+{
+  const AbutSide *m     = pair->nodes[pair->which];
+  PetscInt        first = -1, last = -1;
+  PetscReal       edge[2], length = 0.;
+
+  for (PetscInt i = 0; i < m->n; ++i) {
+    if (i) length += PetscSqrtReal(PetscSqr(m->x[2 * i] - m->x[2 * i - 2]) + PetscSqr(m->x[2 * i + 1] - m->x[2 * i - 1]));
+    if (p[i] <= 0.) continue;
+    if (first < 0) first = i;
+    last = i;
+  }
+  if (first < 0) return 0.;
+  for (PetscInt k = 0; k < 2; ++k) {
+    const PetscInt  in = k ? last : first, out = k ? last + 1 : first - 1;
+    const PetscReal ds[2] = {m->x[2 * in] - m->x[0], m->x[2 * in + 1] - m->x[1]};
+
+    edge[k] = PetscSqrtReal(ds[0] * ds[0] + ds[1] * ds[1]);
+    if (out < 0 || out >= m->n || pair->D[out] <= 0.) {
+      if (out < 0 || (k == 0 && out == 0)) edge[k] = 0.; /* closed up to the end, or up to an end node that carries no pressure */
+      else edge[k] = length;
+      continue;
+    }
+    {
+      const PetscReal h = PetscSqrtReal(PetscSqr(m->x[2 * out] - m->x[2 * in]) + PetscSqr(m->x[2 * out + 1] - m->x[2 * in + 1]));
+
+      if (g[in] > 0. && g[out] < 0.) edge[k] += (k ? 1. : -1.) * h * g[in] / (g[in] - g[out]);
+    }
+  }
+  if (edge[0] <= 0. || edge[1] >= length) return edge[1] - edge[0];
+  return 0.5 * (edge[1] - edge[0]);
+}
+
+/*@C
+   AbutPairGetState - Forces, contact zone and the residuals of the contact conditions (7)-(10) of the paper
+
+   Not Collective
+
+   Input Parameters:
++  pair - the pair, set up
+.  u1   - [n1] normal displacements at the nodes of the first side, length
+.  u2   - [n2] the same on the second side
+-  p    - [nodes of the pressure side] the pressures that act, stress
+
+   Output Parameter:
+.  state - the state
+
+   Level: intermediate
+
+.seealso: `AbutPairComputePressure()`, `AbutInterfaceGetPairState()`
+@*/
+PetscErrorCode AbutPairGetState(AbutPair pair, const PetscReal u1[], const PetscReal u2[], const PetscReal p[], AbutPairState *state)
+{
+  const PetscReal *const u[2] = {u1, u2};
+  PetscReal             *g    = pair->work, *f[2], sum[2] = {0., 0.}, product = 0.;
+  const PetscInt         n    = pair->n[pair->which];
+
+  PetscFunctionBegin;
+  PetscCall(PetscMemzero(state, sizeof(*state)));
+  PetscCall(AbutPairPenetration_Private(pair, u, g));
+  for (PetscInt i = 0; i < n; ++i) {
+    if (pair->D[i] <= 0.) continue;
+    ++state->nodes;
+    state->force += p[i] * pair->D[i];
+    state->energy += 0.5 * pair->theta * p[i] * p[i] * pair->D[i];
+    state->pressure_max    = PetscMax(state->pressure_max, p[i]);
+    state->pressure_min    = PetscMin(state->pressure_min, p[i]);
+    state->penetration_max = PetscMax(state->penetration_max, g[i]);
+    state->complementarity = PetscMax(state->complementarity, p[i] * PetscAbsReal(p[i] * pair->theta - g[i]));
+    product                = PetscMax(product, p[i] * PetscAbsReal(g[i]));
+    if (p[i] > 0.) {
+      ++state->active;
+      state->contact_length += pair->D[i];
+    }
+  }
+  if (product > 0.) state->complementarity /= product;
+  state->contact_edge = AbutPairEdge_Private(pair, g, p);
+  PetscCall(PetscMalloc2(pair->n[0], &f[0], pair->n[1], &f[1]));
+  PetscCall(AbutPairComputeForce(pair, p, f[0], f[1]));
+  for (PetscInt s = 0; s < 2; ++s)
+    for (PetscInt i = 0; i < pair->n[s]; ++i) sum[s] += f[s][i];
+  PetscCall(PetscFree2(f[0], f[1]));
+  state->balance = state->force > 0. ? PetscAbsReal(sum[0] - sum[1]) / state->force : 0.;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,242 @@
+#include <abut/private/recorderimpl.h> /*I "abutrecorder.h" I*/
+
+/* A vector of `n` rows of `bs` numbers over all ranks, of which `local` (or PETSC_DECIDE) are here */
+static PetscErrorCode AbutFieldsCreateVec_Private(MPI_Comm comm, const char name[], PetscInt bs, PetscInt local, PetscInt n, Vec *v)
+{
+  PetscFunctionBegin;
+  if (local == PETSC_DECIDE) PetscCall(PetscSplitOwnership(comm, &local, &n));
+  PetscCall(VecCreate(comm, v));
+  PetscCall(VecSetSizes(*v, bs * local, PETSC_DETERMINE));
+  PetscCall(VecSetBlockSize(*v, bs));
+  PetscCall(VecSetType(*v, VECSTANDARD));
+  PetscCall(PetscObjectSetName((PetscObject)*v, name));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rows of the local vertices: global numbers, then the hanging ones of all ranks */
+static PetscErrorCode AbutFieldsNumberVertices_Private(MPI_Comm comm, const AbutMeshTopology *t, PetscInt number[], PetscInt *nvertices)
+{
+  PetscInt hanging = 0, next, all;
+
+  PetscFunctionBegin;
+  for (PetscInt v = 0; v < t->nvertices; ++v) hanging += t->unknown[v] < 0;
+  PetscCallMPI(MPI_Scan(&hanging, &next, 1, MPIU_INT, MPI_SUM, comm));
+  PetscCallMPI(MPI_Allreduce(&hanging, &all, 1, MPIU_INT, MPI_SUM, comm));
+  next += t->nglobal - hanging;
+  for (PetscInt v = 0; v < t->nvertices; ++v) number[v] = t->unknown[v] < 0 ? next++ : t->global[t->unknown[v]];
+  *nvertices = t->nglobal + all;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A field of the vertices, each row given by the rank that owns the vertex; hanging ones by every rank that has them */
+static PetscErrorCode AbutFieldsCreateVertexVec_Private(MPI_Comm comm, const char name[], const AbutMeshTopology *t,
+                                                        const PetscInt number[], PetscInt n, const PetscReal values[], Vec *v)
+{
+  PetscFunctionBegin;
+  PetscCall(AbutFieldsCreateVec_Private(comm, name, 2, PETSC_DECIDE, n, v));
+  for (PetscInt i = 0; i < t->nvertices; ++i) {
+    if (t->unknown[i] < t->nowned) PetscCall(VecSetValuesBlocked(*v, 1, &number[i], &values[2 * i], INSERT_VALUES));
+  }
+  PetscCall(VecAssemblyBegin(*v));
+  PetscCall(VecAssemblyEnd(*v));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutFieldsCreateCells_Private(MPI_Comm comm, const AbutMeshTopology *t, const PetscInt number[], IS *cells)
+{
+  const PetscInt n = t->corners * t->ncells;
+  PetscInt      *corner;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(n, &corner));
+  for (PetscInt i = 0; i < n; ++i) corner[i] = number[t->cell[i]];
+  PetscCall(ISCreateGeneral(comm, n, corner, PETSC_OWN_POINTER, cells));
+  PetscCall(ISSetBlockSize(*cells, t->corners));
+  PetscCall(PetscObjectSetName((PetscObject)*cells, "cells"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Stress at the centre of each cell; in plane strain s33 = nu (s11 + s22) */
+static PetscErrorCode AbutFieldsCreateStress_Private(MPI_Comm comm, AbutBody body, const AbutMeshTopology *t, Vec *stress, Vec *von_mises)
+{
+  const PetscReal centre[2][2] = {
+    {1. / 3., 1. / 3.},
+    {0.,      0.     }
+  };
+  PetscReal    young, nu, s[3];
+  PetscScalar *row, *vm;
+
+  PetscFunctionBegin;
+  PetscCall(AbutBodyGetMaterial(body, &young, &nu));
+  PetscCall(AbutFieldsCreateVec_Private(comm, "stress", 4, t->ncells, PETSC_DETERMINE, stress));
+  PetscCall(AbutFieldsCreateVec_Private(comm, "von_mises", 1, t->ncells, PETSC_DETERMINE, von_mises));
+  PetscCall(VecGetArrayWrite(*stress, &row));
+  PetscCall(VecGetArrayWrite(*von_mises, &vm));
+  for (PetscInt c = 0; c < t->ncells; ++c) {
+    PetscCall(AbutBodyGetCellStress(body, c, centre[t->corners == 4], s));
+    row[4 * c]     = s[0];
+    row[4 * c + 1] = s[1];
+    row[4 * c + 2] = nu * (s[0] + s[1]);
+    row[4 * c + 3] = s[2];
+    PetscCall(AbutVonMises(s, nu, &vm[c]));
+  }
+  PetscCall(VecRestoreArrayWrite(*stress, &row));
+  PetscCall(VecRestoreArrayWrite(*von_mises, &vm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutFieldsCreateLevel_Private(MPI_Comm comm, const AbutMeshTopology *t, Vec *level)
+{
+  PetscScalar *l;
+
+  PetscFunctionBegin;
+  PetscCall(AbutFieldsCreateVec_Private(comm, "level", 1, t->ncells, PETSC_DETERMINE, level));
+  PetscCall(VecGetArrayWrite(*level, &l));
+  for (PetscInt c = 0; c < t->ncells; ++c) l[c] = t->level[c];
+  PetscCall(VecRestoreArrayWrite(*level, &l));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Collects the fields of a solved body; `eta` (one number per cell) may be NULL */
+PetscErrorCode AbutFieldsCreate_Private(AbutBody body, Vec eta, AbutFields *f)
+{
+  const MPI_Comm          comm = PetscObjectComm((PetscObject)body);
+  AbutMesh                mesh;
+  const AbutMeshTopology *t;
+  const PetscReal        *u;
+  PetscInt               *number;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMemzero(f, sizeof(*f)));
+  PetscCall(AbutBodyGetMesh(body, &mesh));
+  PetscCall(AbutMeshGetTopology(mesh, &t));
+  PetscCall(AbutMeshGetCellCount(mesh, &f->ncells));
+  PetscCall(AbutBodyGetVertexDisplacement(body, &u));
+  f->corners = t->corners;
+  PetscCall(PetscMalloc1(t->nvertices, &number));
+  PetscCall(AbutFieldsNumberVertices_Private(comm, t, number, &f->nvertices));
+  PetscCall(AbutFieldsCreateVertexVec_Private(comm, "vertices", t, number, f->nvertices, t->x, &f->vertices));
+  PetscCall(AbutFieldsCreateVertexVec_Private(comm, "displacement", t, number, f->nvertices, u, &f->displacement));
+  PetscCall(AbutFieldsCreateCells_Private(comm, t, number, &f->cells));
+  PetscCall(PetscFree(number));
+  PetscCall(AbutFieldsCreateStress_Private(comm, body, t, &f->stress, &f->von_mises));
+  PetscCall(AbutFieldsCreateLevel_Private(comm, t, &f->level));
+  if (eta) {
+    PetscCall(AbutFieldsCreateVec_Private(comm, "eta", 1, t->ncells, PETSC_DETERMINE, &f->eta));
+    PetscCall(VecCopy(eta, f->eta));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AbutFieldsDestroy_Private(AbutFields *f)
+{
+  PetscFunctionBegin;
+  PetscCall(VecDestroy(&f->vertices));
+  PetscCall(VecDestroy(&f->displacement));
+  PetscCall(ISDestroy(&f->cells));
+  PetscCall(VecDestroy(&f->stress));
+  PetscCall(VecDestroy(&f->von_mises));
+  PetscCall(VecDestroy(&f->level));
+  PetscCall(VecDestroy(&f->eta));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds one body of one cycle to what the index file lists */
+static PetscErrorCode AbutRecorderAddPart_Private(AbutRecorder rec, PetscInt cycle, AbutBody body, const AbutFields *f)
+{
+  const char       *name;
+  AbutRecorderPart *part;
+
+  PetscFunctionBegin;
+  if (rec->nparts == rec->maxparts) {
+    rec->maxparts = 2 * rec->maxparts + 16;
+    PetscCall(PetscRealloc(sizeof(AbutRecorderPart) * rec->maxparts, &rec->part));
+  }
+  part = &rec->part[rec->nparts++];
+  PetscCall(AbutBodyGetName(body, &name));
+  PetscCall(PetscStrallocpy(name, &part->body));
+  part->cycle     = cycle;
+  part->nvertices = f->nvertices;
+  part->ncells    = f->ncells;
+  part->corners   = f->corners;
+  part->has_eta   = f->eta ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutRecorderWantsFields - Whether `-output` asks for fields
+
+   Not Collective
+
+   Input Parameter:
+.  rec - the recorder
+
+   Output Parameter:
+.  wants - `PETSC_TRUE` if `AbutRecorderWriteFields()` will write
+
+   Level: intermediate
+
+.seealso: `AbutRecorderWriteFields()`
+@*/
+PetscErrorCode AbutRecorderWantsFields(AbutRecorder rec, PetscBool *wants)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(rec, ABUTRECORDER_CLASSID, 1);
+  *wants = rec->output ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutRecorderWriteFields - Writes the fields of all bodies in one cycle, beside those of earlier cycles
+
+   Collective
+
+   Input Parameters:
++  rec     - the recorder
+.  cycle   - number of the cycle from 0, larger than that of the last call
+.  nbodies - how many bodies
+.  bodies  - [nbodies] the bodies after a solve, all on the communicator of the recorder
+-  eta     - [nbodies] one number per cell (`AbutBodyCreateCellVec()`), or `NULL` for a body without; the array may be `NULL` too
+
+   Options Database Key:
+.  -output FILE.xdmf|FILE.vtu - where; without it nothing is done
+
+   Level: intermediate
+
+   Notes:
+   Per vertex the coordinates and the displacement (length unit of the scene); per cell the stress s11, s22, s33, s12 and its von
+   Mises value at the centre (stress unit), the refinement level, and eta. Vertex g of a file is the vertex with global number g,
+   hanging vertices follow.
+
+   Behind an .xdmf is an HDF5 file with the groups `/cycle_0000/BODY`, written by all ranks together. From the second cycle on it is
+   copied before more is appended, so that a crash leaves all earlier cycles readable; n cycles copy about n/2 times the final size.
+   A .vtu is gathered on rank 0 and is text: for meshes that fit there.
+
+.seealso: `AbutRecorderWantsFields()`, `AbutRecorderWriteProfile()`, `AbutRecorderSetFromOptions()`
+@*/
+PetscErrorCode AbutRecorderWriteFields(AbutRecorder rec, PetscInt cycle, PetscInt nbodies, AbutBody bodies[], Vec eta[])
+{
+  const MPI_Comm comm = PetscObjectComm((PetscObject)rec);
+  AbutFields     f;
+  PetscMPIInt    same;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(rec, ABUTRECORDER_CLASSID, 1);
+  if (!rec->output) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(!rec->nparts || cycle > rec->part[rec->nparts - 1].cycle, comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "Fields of cycle %" PetscInt_FMT " after those of cycle %" PetscInt_FMT, cycle, rec->part[rec->nparts - 1].cycle);
+  PetscCall(PetscLogEventBegin(ABUTRECORDER_WriteFields, rec, 0, 0, 0));
+  PetscTryTypeMethod(rec, begincycle);
+  for (PetscInt i = 0; i < nbodies; ++i) {
+    PetscCallMPI(MPI_Comm_compare(comm, PetscObjectComm((PetscObject)bodies[i]), &same));
+    PetscCheck(same == MPI_IDENT || same == MPI_CONGRUENT, comm, PETSC_ERR_ARG_NOTSAMECOMM,
+               "A body is not on the communicator of the recorder");
+    PetscCall(AbutFieldsCreate_Private(bodies[i], eta ? eta[i] : NULL, &f));
+    PetscCall(AbutRecorderAddPart_Private(rec, cycle, bodies[i], &f));
+    PetscUseTypeMethod(rec, writepart, &rec->part[rec->nparts - 1], &f);
+    PetscCall(AbutFieldsDestroy_Private(&f));
+  }
+  PetscUseTypeMethod(rec, endcycle);
+  PetscCall(PetscLogEventEnd(ABUTRECORDER_WriteFields, rec, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,123 @@
+#include <abut/private/recorderimpl.h> /*I "abutrecorder.h" I*/
+#include <math.h>
+
+/* What the profile of one pair is made of, known on all ranks */
+typedef struct {
+  const char      *name;
+  const AbutSide  *side[2];
+  const PetscReal *trace[2]; /* [side[s]->n] u_n */
+  PetscInt         which;    /* the side that carries the pressures */
+  const PetscReal *pressure; /* [side[which]->n] */
+  const PetscReal *length;   /* [side[which]->n] 0 where a node carries no pressure */
+  PetscReal       *gap;      /* [side[which]->n] */
+} PairProfile;
+
+typedef struct {
+  PetscInt     n;
+  PairProfile *pair;
+} Profile;
+
+/* Arc length of each node from the first one on the way: to be called for i = 0, 1, ... */
+static double AddArc(const AbutSide *side, PetscInt i, double arc)
+{
+  const PetscReal *x = &side->x[2 * i];
+
+  return i ? arc + hypot(x[0] - x[-2], x[1] - x[-1]) : 0.;
+}
+
+static void WriteTrace(FILE *f, const PairProfile *p, int s)
+{
+  const AbutSide *side = p->side[s];
+  double          arc  = 0.;
+
+  for (PetscInt i = 0; i < side->n; ++i) {
+    const double x = side->x[2 * i], y = side->x[2 * i + 1];
+
+    arc = AddArc(side, i, arc);
+    fprintf(f, "%s,%d,%.10g,%.10g,%.10g,%.10g,,\n", p->name, s + 1, arc, x, y, (double)p->trace[s][i]);
+  }
+}
+
+static void WritePressure(FILE *f, const PairProfile *p)
+{
+  const AbutSide *side = p->side[p->which];
+  double          arc  = 0.;
+
+  for (PetscInt i = 0; i < side->n; ++i) {
+    const double x = side->x[2 * i], y = side->x[2 * i + 1];
+
+    arc = AddArc(side, i, arc);
+    if (p->length[i] == 0.) continue;
+    fprintf(f, "%s,pressure,%.10g,%.10g,%.10g,,%.10g,%.10g\n", p->name, arc, x, y, (double)p->gap[i], (double)p->pressure[i]);
+  }
+}
+
+static void WriteProfile(FILE *f, const void *ctx)
+{
+  const Profile *p = (const Profile *)ctx;
+
+  fprintf(f, "pair,side,s,x,y,u_n,gap,pressure\n");
+  for (PetscInt i = 0; i < p->n; ++i) {
+    for (int s = 0; s < 2; ++s) WriteTrace(f, &p->pair[i], s);
+    WritePressure(f, &p->pair[i]);
+  }
+}
+
+static PetscErrorCode AbutRecorderCollectPair_Private(AbutInterface iface, PetscInt i, AbutPair pair, PairProfile *p)
+{
+  AbutBody         body[2];
+  PetscInt         number[2], n;
+  const PetscReal *x;
+
+  PetscFunctionBegin;
+  PetscCall(AbutPairGetName(pair, &p->name));
+  PetscCall(AbutPairGetBodies(pair, body, number));
+  for (PetscInt s = 0; s < 2; ++s) {
+    PetscCall(AbutBodyGetSide(body[s], number[s], &p->side[s]));
+    PetscCall(AbutInterfaceGetTrace(iface, i, s, &p->trace[s]));
+  }
+  PetscCall(AbutInterfaceGetPressure(iface, i, &p->pressure));
+  PetscCall(AbutPairGetPressureNodes(pair, &p->which, &n, &x, &p->length));
+  PetscCall(PetscMalloc1(n, &p->gap));
+  for (PetscInt k = 0; k < n; ++k) PetscCall(AbutPairGetGap(pair, &x[2 * k], &p->gap[k]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutRecorderWriteProfile - Writes the traces and pressures along every pair on the present mesh
+
+   Collective
+
+   Input Parameters:
++  rec     - the recorder
+.  iface   - the interface after a sweep
+.  npairs  - how many pairs
+-  pairs   - [npairs] the pairs, as given to `AbutInterfaceCreate()`
+
+   Options Database Key:
+.  -output_profile FILE.csv - where; without it nothing is done
+
+   Level: intermediate
+
+   Notes:
+   The columns are pair, side, s, x, y, u_n, gap, pressure; s is the arc length from the first node of the side, lengths are in the
+   unit of the scene. Rows with side 1 or 2 hold u_n, the displacement along the outward normal, at the nodes of that side; rows with
+   side `pressure` hold the gap and the nodal pressure of the dual-mortar method (stress unit) at the nodes that carry one. The other
+   cells are empty.
+
+.seealso: `AbutInterfaceGetTrace()`, `AbutInterfaceGetPressure()`, `AbutPairGetPressureNodes()`, `AbutRecorderSetFromOptions()`
+@*/
+PetscErrorCode AbutRecorderWriteProfile(AbutRecorder rec, AbutInterface iface, PetscInt npairs, AbutPair pairs[])
+{
+  Profile p = {npairs, NULL};
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(rec, ABUTRECORDER_CLASSID, 1);
+  if (!rec->profile_file) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(npairs, &p.pair));
+  for (PetscInt i = 0; i < npairs; ++i) PetscCall(AbutRecorderCollectPair_Private(iface, i, pairs[i], &p.pair[i]));
+  PetscCall(AbutFileWrite_Private(PetscObjectComm((PetscObject)rec), rec->profile_file, WriteProfile, &p));
+  for (PetscInt i = 0; i < npairs; ++i) PetscCall(PetscFree(p.pair[i].gap));
+  PetscCall(PetscFree(p.pair));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

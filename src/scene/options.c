@@ -1,0 +1,162 @@
+#include <abut/private/sceneimpl.h> /*I "abutscene.h" I*/
+
+/* What a scene names is made, and only that */
+
+static const char *const AbutReservedNames[] = {"scene", "snes", "npc", "ksp", "pc", "mat", "vec", "dm", "adaptor", "estimator", "record", "output", "plugin", "log", "options", "malloc", "help", NULL};
+
+/* A comma-separated list of names; names are prefixes of keys, so no two may be equal, nor equal to the prefix of a class */
+PetscErrorCode AbutSceneReadNames_Private(AbutScene scene, AbutOptionItems PetscOptionsObject, const char opt[], const char text[], PetscInt *n, char *names[])
+{
+  MPI_Comm  comm = PetscObjectComm((PetscObject)scene);
+  PetscBool given, match;
+
+  PetscFunctionBegin;
+  *n = ABUT_MAX_NAMES;
+  PetscCall(PetscOptionsStringArray(opt, text, NULL, names, n, &given));
+  if (!given) *n = 0;
+  for (PetscInt i = 0; i < *n; ++i) {
+    const char *at = names[i];
+
+    AbutCheckInput((*at >= 'a' && *at <= 'z') || (*at >= 'A' && *at <= 'Z'), comm, "%s: \"%s\" is not a name; begin with a letter", opt + 1, at);
+    for (; *at; ++at)
+      AbutCheckInput((*at >= 'a' && *at <= 'z') || (*at >= 'A' && *at <= 'Z') || (*at >= '0' && *at <= '9'), comm, "%s: \"%s\" is not a name; use letters and digits", opt + 1, names[i]);
+    for (PetscInt r = 0; AbutReservedNames[r]; ++r) {
+      PetscCall(PetscStrcasecmp(names[i], AbutReservedNames[r], &match));
+      AbutCheckInput(!match, comm, "%s: \"%s\" begins keys of its own; take another name", opt + 1, names[i]);
+    }
+    for (PetscInt j = 0; j < i; ++j) {
+      PetscCall(PetscStrcasecmp(names[i], names[j], &match));
+      AbutCheckInput(!match, comm, "%s: \"%s\" stands twice (names are compared without case); take different names", opt + 1, names[i]);
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutSceneCheckDistinct_Private(AbutScene scene, PetscInt n, char *const names[], PetscInt m, char *const others[])
+{
+  PetscBool match;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < n; ++i)
+    for (PetscInt j = 0; j < m; ++j) {
+      PetscCall(PetscStrcasecmp(names[i], others[j], &match));
+      AbutCheckInput(!match, PetscObjectComm((PetscObject)scene), "scene: the name \"%s\" is given to two things; bodies, pairs and probes need different names", names[i]);
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The estimator runs on the bodies of the adaptor, or on all; an adaptor without an estimator gets the default one */
+static PetscErrorCode AbutSceneErrorFromOptions_Private(AbutScene scene, PetscBool adapts, PetscBool estimates)
+{
+  MPI_Comm           comm = PetscObjectComm((PetscObject)scene);
+  const char *const *names = NULL;
+  PetscInt           n     = 0;
+
+  PetscFunctionBegin;
+  if (adapts) {
+    PetscCall(AbutAdaptorCreate(comm, &scene->adaptor));
+    PetscCall(AbutAdaptorSetFromOptions(scene->adaptor));
+    PetscCall(AbutAdaptorGetBodies(scene->adaptor, &n, &names));
+  }
+  if (adapts || estimates) {
+    PetscCall(AbutEstimatorCreate(comm, &scene->estimator));
+    PetscCall(AbutEstimatorSetFromOptions(scene->estimator));
+  }
+  for (PetscInt b = 0; b < scene->nbodies; ++b) scene->estimates[b] = (PetscBool)(scene->estimator && !n);
+  for (PetscInt i = 0; i < n; ++i) {
+    AbutBody body;
+
+    PetscCall(AbutSceneGetBody(scene, names[i], &body));
+    AbutCheckInput(body, comm, "adaptor_bodies: the scene has no body \"%s\"; give names from scene_bodies", names[i]);
+    for (PetscInt b = 0; b < scene->nbodies; ++b)
+      if (scene->body[b] == body) scene->estimates[b] = PETSC_TRUE;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Libraries of the user's own, before any type is looked up */
+static PetscErrorCode AbutScenePlugins_Private(AbutScene scene, AbutOptionItems PetscOptionsObject)
+{
+  char    *path[ABUT_MAX_NAMES];
+  PetscInt n = ABUT_MAX_NAMES;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsStringArray("-plugin", "Libraries to load", NULL, path, &n, NULL));
+  for (PetscInt i = 0; i < n; ++i) {
+    PetscCall(AbutPluginAppend(PetscObjectComm((PetscObject)scene), path[i]));
+    PetscCall(PetscFree(path[i]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutSceneFreeNames_Private(PetscInt n, char *names[])
+{
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < n; ++i) PetscCall(PetscFree(names[i]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutSceneSetFromOptions - Reads a scene and makes what it names
+
+   Collective
+
+   Input Parameter:
+.  scene - the scene
+
+   Options Database Keys:
++  -scene_bodies <names>   - bodies, see `AbutBodyCreate()` for their keys
+.  -scene_pairs <names>    - possible contacts, see `AbutPairCreate()`
+.  -scene_probes <names>   - points of the record: `-NAME_probe_body`, `-NAME_probe_point x,y`
+.  -scene_interleave       - one sweep and one adaptation a cycle, Fig. 2 of the paper; needs ddneumann
+.  -scene_eps_u <0.0015>   - with it: the relative change of the traces at which the run ends
+.  -adaptor_type, -estimator_type, -snes_* - what adapts, estimates, iterates; see `AbutAdaptorCreate()`, `AbutEstimatorCreate()`, `SNESDDNEUMANN`
+-  -plugin <libraries>     - libraries with estimators of your own
+
+   Level: beginner
+
+.seealso: `AbutSceneSetUp()`, `AbutSceneSolve()`
+@*/
+PetscErrorCode AbutSceneSetFromOptions(AbutScene scene)
+{
+  MPI_Comm  comm = PetscObjectComm((PetscObject)scene);
+  char     *bodies[ABUT_MAX_NAMES], *pairs[ABUT_MAX_NAMES], *probes[ABUT_MAX_NAMES], type[64] = "";
+  PetscInt  nbodies, npairs, nprobes;
+  PetscBool adapts, estimates;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(scene, ABUTSCENE_CLASSID, 1);
+  PetscObjectOptionsBegin((PetscObject)scene);
+  PetscCall(AbutSceneReadNames_Private(scene, PetscOptionsObject, "-scene_bodies", "Names of the bodies", &nbodies, bodies));
+  PetscCall(AbutSceneReadNames_Private(scene, PetscOptionsObject, "-scene_pairs", "Names of the possible contacts", &npairs, pairs));
+  PetscCall(AbutSceneReadNames_Private(scene, PetscOptionsObject, "-scene_probes", "Names of the points of the record", &nprobes, probes));
+  PetscCall(AbutOptionsBool(PetscOptionsObject, "-scene_interleave", "One sweep and one adaptation a cycle", &scene->interleave, NULL));
+  if (scene->interleave) PetscCall(AbutOptionsReal(PetscOptionsObject, "-scene_eps_u", "Relative change of the traces at the end", &scene->eps_u, NULL));
+  PetscCall(PetscOptionsString("-adaptor_type", "Type of the adaptor", NULL, type, type, sizeof(type), &adapts));
+  PetscCall(PetscOptionsString("-estimator_type", "Type of the estimator", NULL, type, type, sizeof(type), &estimates));
+  PetscCall(AbutScenePlugins_Private(scene, PetscOptionsObject));
+  PetscOptionsEnd();
+  AbutCheckInput(nbodies > 0, comm, "scene_bodies: missing; give the names of the bodies, or a scene file, for example examples/layers/layers.yml");
+  PetscCall(AbutSceneCheckDistinct_Private(scene, nbodies, bodies, npairs, pairs));
+  PetscCall(AbutSceneCheckDistinct_Private(scene, nbodies, bodies, nprobes, probes));
+  PetscCall(AbutSceneCheckDistinct_Private(scene, npairs, pairs, nprobes, probes));
+  for (PetscInt i = 0; i < nbodies; ++i) {
+    PetscCall(AbutBodyCreate(comm, bodies[i], &scene->body[scene->nbodies++]));
+    PetscCall(AbutBodySetFromOptions(scene->body[i]));
+  }
+  for (PetscInt i = 0; i < npairs; ++i) {
+    PetscCall(AbutPairCreate(comm, pairs[i], &scene->pair[scene->npairs++]));
+    PetscCall(AbutPairSetFromOptions(scene->pair[i], scene->nbodies, scene->body));
+  }
+  PetscCall(AbutSceneProbesFromOptions_Private(scene, nprobes, probes));
+  PetscCall(AbutSceneFreeNames_Private(nbodies, bodies));
+  PetscCall(AbutSceneFreeNames_Private(npairs, pairs));
+  PetscCall(AbutSceneFreeNames_Private(nprobes, probes));
+  PetscCall(AbutInterfaceCreate(comm, scene->nbodies, scene->body, scene->npairs, scene->pair, &scene->iface));
+  if (scene->npairs) PetscCall(AbutSceneSolverFromOptions_Private(scene));
+  PetscCall(AbutSceneErrorFromOptions_Private(scene, adapts, estimates));
+  AbutCheckInput(!scene->interleave || scene->adaptor, comm, "scene_interleave: the scene has no adaptor; give adaptor_type, or leave scene_interleave out");
+  PetscCall(AbutRecorderCreate(comm, &scene->recorder));
+  PetscCall(AbutRecorderSetFromOptions(scene->recorder));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

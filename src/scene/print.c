@@ -1,0 +1,94 @@
+#include <abut/private/sceneimpl.h>
+
+/* Progress for people: one line a cycle, a summary at the end */
+
+PetscErrorCode AbutScenePrintHeader_Private(AbutScene scene)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscPrintf(PetscObjectComm((PetscObject)scene), "%5s %10s %8s %7s %10s %10s %12s %9s\n", "cycle", "unknowns", "cells", "marked", "estimate", "eta_max", "sweeps", "seconds"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AbutScenePrintCycle_Private(AbutScene scene, PetscInt nmarked)
+{
+  PetscInt  unknowns = 0, cells = 0, sweeps = scene->cycle + 1;
+  PetscReal worst[2] = {0., 0.};
+  char      estimate[2][32] = {"-", "-"};
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < scene->nbodies; ++b) {
+    AbutMesh  mesh;
+    PetscInt  n, c;
+    PetscReal eta, eta_max;
+
+    PetscCall(AbutBodyGetMesh(scene->body[b], &mesh));
+    PetscCall(AbutBodyGetSize(scene->body[b], &n));
+    PetscCall(AbutMeshGetCellCount(mesh, &c));
+    unknowns += n;
+    cells += c;
+    if (!scene->eta[b]) continue;
+    PetscCall(AbutEstimatorGetNorms(scene->body[b], scene->eta[b], &eta, &eta_max));
+    worst[0] = PetscMax(worst[0], eta);
+    worst[1] = PetscMax(worst[1], eta_max);
+    for (PetscInt k = 0; k < 2; ++k) PetscCall(PetscSNPrintf(estimate[k], sizeof(estimate[k]), "%.4f", (double)worst[k]));
+  }
+  if (scene->snes) PetscCall(AbutInterfaceGetSweeps(scene->iface, &sweeps, NULL));
+  PetscCall(PetscPrintf(PetscObjectComm((PetscObject)scene), "%5" PetscInt_FMT " %10" PetscInt_FMT " %8" PetscInt_FMT " %7" PetscInt_FMT " %10s %10s %12" PetscInt_FMT " %9.2f\n", scene->cycle + 1, unknowns, cells,
+                        nmarked, estimate[0], estimate[1], sweeps, (double)(scene->mark - scene->begun)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutScenePrintPairs_Private(AbutScene scene)
+{
+  MPI_Comm comm = PetscObjectComm((PetscObject)scene);
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < scene->npairs; ++i) {
+    AbutPairState s;
+    const char   *name;
+
+    PetscCall(AbutPairGetName(scene->pair[i], &name));
+    PetscCall(AbutInterfaceGetPairState(scene->iface, i, &s));
+    if (!s.active) {
+      PetscCall(PetscPrintf(comm, "pair %s: no contact\n", name));
+      continue;
+    }
+    PetscCall(PetscPrintf(comm, "pair %s: force %.8g, largest pressure %.8g, contact edge at %.6g, %" PetscInt_FMT " of %" PetscInt_FMT " nodes in contact\n", name, (double)s.force, (double)s.pressure_max,
+                          (double)s.contact_edge, s.active, s.nodes));
+    PetscCall(PetscPrintf(comm, "  penetration %.3g, complementarity %.1e, balance of forces %.1e\n", (double)s.penetration_max, (double)s.complementarity, (double)s.balance));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the run cost, per unit */
+static PetscErrorCode AbutScenePrintCost_Private(AbutScene scene)
+{
+  MPI_Comm        comm  = PetscObjectComm((PetscObject)scene);
+  const PetscReal total = scene->mark - scene->begun;
+
+  PetscFunctionBegin;
+  PetscCall(PetscPrintf(comm, "seconds: %.2f = set-up %.2f + sweeps %.2f + estimate %.2f (%.0f %%) + adapt %.2f + output %.2f\n", (double)total, scene->seconds[ABUT_TIME_SETUP], scene->seconds[ABUT_TIME_SOLVE],
+                        scene->seconds[ABUT_TIME_ESTIMATE], total > 0. ? 100. * scene->seconds[ABUT_TIME_ESTIMATE] / total : 0., scene->seconds[ABUT_TIME_ADAPT], scene->seconds[ABUT_TIME_OUTPUT]));
+  for (PetscInt b = 0; b < scene->nbodies; ++b) {
+    const char *name;
+    PetscReal   seconds;
+    PetscInt    cells;
+
+    PetscCall(AbutBodyGetName(scene->body[b], &name));
+    PetscCall(AbutBodyGetAssemblyCost(scene->body[b], &seconds, &cells));
+    if (cells) PetscCall(PetscPrintf(comm, "body %s: %.2f microseconds a cell for element matrices and their insertion\n", name, (double)(1e6 * seconds / cells)));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AbutScenePrintEnd_Private(AbutScene scene)
+{
+  MPI_Comm comm = PetscObjectComm((PetscObject)scene);
+
+  PetscFunctionBegin;
+  PetscCall(AbutScenePrintPairs_Private(scene));
+  PetscCall(AbutScenePrintCost_Private(scene));
+  PetscCall(PetscPrintf(comm, "verdict: %s%s\n", scene->verdict,
+                        scene->status == 3 ? " (cells are still above the threshold: raise -adaptor_max_level or -adaptor_max_unknowns, or the threshold)" : ""));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,198 @@
+#include <abut/private/sceneimpl.h>
+#include <sys/resource.h>
+
+/* What a run says of itself: the keys of the record */
+
+#define ABUT_CONSISTENT 1e-6 /* relative: balance of forces, energy identity */
+
+static PetscErrorCode AbutSceneSetReal_Private(AbutScene scene, const char kind[], const char name[], const char key[], PetscReal value)
+{
+  char full[256];
+
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(full, sizeof(full), "%s.%s%s%s", kind, name, key[0] ? "." : "", key));
+  PetscCall(AbutRecorderSetReal(scene->recorder, full, value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Unknowns of the uniform mesh whose cells are all as small as the smallest: what the adapted mesh is compared with */
+static PetscErrorCode AbutSceneUniformUnknowns_Private(AbutMesh mesh, PetscReal h_min, PetscReal *n)
+{
+  PetscReal lower[2], upper[2];
+
+  PetscFunctionBegin;
+  PetscCall(AbutMeshGetBox(mesh, lower, upper));
+  *n = 2. * (PetscFloorReal(0.5 + (upper[0] - lower[0]) / h_min) + 1.) * (PetscFloorReal(0.5 + (upper[1] - lower[1]) / h_min) + 1.);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutSceneRecordBodies_Private(AbutScene scene, PetscReal *energy_strain, PetscBool *consistent)
+{
+  AbutRecorder rec      = scene->recorder;
+  PetscInt     unknowns = 0;
+  PetscReal    strain = 0., linear = 0., balance = 0., identity = 0., alluniform = 0.;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < scene->nbodies; ++b) {
+    const char      *name;
+    AbutMesh         mesh;
+    AbutMeshMeasures m;
+    PetscInt         n, cells, solves, its;
+    PetscReal        energy, work, reaction[2], applied[2], residual, uniform = 0.;
+
+    PetscCall(AbutBodyGetName(scene->body[b], &name));
+    PetscCall(AbutBodyGetMesh(scene->body[b], &mesh));
+    PetscCall(AbutBodyGetSize(scene->body[b], &n));
+    PetscCall(AbutMeshGetCellCount(mesh, &cells));
+    PetscCall(AbutMeshGetMeasures(mesh, &m));
+    PetscCall(AbutBodyGetSolveCounts(scene->body[b], &solves, &its));
+    PetscCall(AbutBodyGetEnergy(scene->body[b], &energy, &work));
+    PetscCall(AbutBodyGetReaction(scene->body[b], reaction, applied));
+    PetscCall(AbutBodyGetLinearResidual(scene->body[b], &residual));
+    PetscCall(AbutSceneUniformUnknowns_Private(mesh, m.h_min, &uniform));
+    PetscCall(AbutSceneSetReal_Private(scene, "body", name, "unknowns", n));
+    PetscCall(AbutSceneSetReal_Private(scene, "body", name, "cells", cells));
+    PetscCall(AbutSceneSetReal_Private(scene, "body", name, "level_max", m.level_max));
+    PetscCall(AbutSceneSetReal_Private(scene, "body", name, "hmin", m.h_min));
+    PetscCall(AbutSceneSetReal_Private(scene, "body", name, "ksp_its", its));
+    PetscCall(AbutSceneSetReal_Private(scene, "body", name, "h_fe", m.h_fe));
+    PetscCall(AbutSceneSetReal_Private(scene, "body", name, "h_be", m.h_be));
+    PetscCall(AbutSceneSetReal_Private(scene, "body", name, "regularity", m.regularity));
+    PetscCall(AbutSceneSetReal_Private(scene, "body", name, "h_ratio", m.ratio));
+    PetscCall(AbutSceneSetReal_Private(scene, "body", name, "lemma", m.lemma));
+    PetscCall(AbutSceneSetReal_Private(scene, "body", name, "unknowns_uniform", uniform));
+    unknowns += n;
+    alluniform += uniform;
+    strain += energy;
+    linear = PetscMax(linear, residual);
+    for (PetscInt d = 0; d < 2; ++d) {
+      const PetscReal scale = PetscMax(PetscAbsReal(reaction[0]), PetscAbsReal(reaction[1]));
+
+      if (scale > 0.) balance = PetscMax(balance, PetscAbsReal(reaction[d] + applied[d]) / scale);
+    }
+    if (energy > 0.) identity = PetscMax(identity, PetscAbsReal(2. * energy - work) / (2. * energy));
+  }
+  PetscCall(AbutRecorderSetInt(rec, "unknowns", unknowns));
+  PetscCall(AbutRecorderSetReal(rec, "energy.strain", strain));
+  *energy_strain = strain;
+  PetscCall(AbutRecorderSetReal(rec, "error.linear", linear));
+  PetscCall(AbutRecorderSetReal(rec, "check.balance", balance));
+  PetscCall(AbutRecorderSetReal(rec, "check.energy", identity));
+  *consistent = (PetscBool)(balance <= ABUT_CONSISTENT && identity <= ABUT_CONSISTENT);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutSceneRecordPairs_Private(AbutScene scene, PetscReal strain, PetscBool *consistent)
+{
+  AbutRecorder rec     = scene->recorder;
+  PetscReal    penalty = 0., residual, pressure;
+
+  PetscFunctionBegin;
+  if (!scene->npairs) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; i < scene->npairs; ++i) {
+    const char   *name;
+    AbutPairState s;
+    PetscReal     theta;
+
+    PetscCall(AbutPairGetName(scene->pair[i], &name));
+    PetscCall(AbutPairGetTheta(scene->pair[i], &theta));
+    PetscCall(AbutInterfaceGetPairState(scene->iface, i, &s));
+    PetscCall(AbutSceneSetReal_Private(scene, "pair", name, "force", s.force));
+    PetscCall(AbutSceneSetReal_Private(scene, "pair", name, "pressure_max", s.pressure_max));
+    PetscCall(AbutSceneSetReal_Private(scene, "pair", name, "contact_length", s.contact_length));
+    PetscCall(AbutSceneSetReal_Private(scene, "pair", name, "contact_edge", s.contact_edge));
+    PetscCall(AbutSceneSetReal_Private(scene, "pair", name, "penetration_max", s.penetration_max));
+    PetscCall(AbutSceneSetReal_Private(scene, "pair", name, "active", s.active));
+    PetscCall(AbutSceneSetReal_Private(scene, "pair", name, "balance", s.balance));
+    PetscCall(AbutSceneSetReal_Private(scene, "pair", name, "complementarity", s.complementarity));
+    PetscCall(AbutSceneSetReal_Private(scene, "pair", name, "theta", theta));
+    penalty += s.energy;
+    *consistent = (PetscBool)(*consistent && s.balance <= ABUT_CONSISTENT && s.pressure_min >= 0.);
+  }
+  PetscCall(AbutInterfaceGetResidual(scene->iface, &residual, &pressure));
+  PetscCall(AbutRecorderSetReal(rec, "energy.penalty", penalty));
+  /* the penalty term shares the energy of the system: its part, in the energy norm, is what theta costs */
+  PetscCall(AbutRecorderSetReal(rec, "error.penalty", strain + penalty > 0. ? PetscSqrtReal(penalty / (strain + penalty)) : 0.));
+  PetscCall(AbutRecorderSetReal(rec, "error.loop", PetscMax(residual, pressure)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutSceneRecordEstimates_Private(AbutScene scene)
+{
+  PetscReal worst = 0.;
+  PetscInt  n;
+
+  PetscFunctionBegin;
+  if (!scene->estimator) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt b = 0; b < scene->nbodies; ++b) {
+    const char *name;
+    PetscReal   eta, eta_max;
+
+    if (!scene->eta[b]) continue;
+    PetscCall(AbutBodyGetName(scene->body[b], &name));
+    PetscCall(AbutEstimatorGetNorms(scene->body[b], scene->eta[b], &eta, &eta_max));
+    PetscCall(AbutSceneSetReal_Private(scene, "eta", name, "", eta));
+    PetscCall(AbutSceneSetReal_Private(scene, "eta_max", name, "", eta_max));
+    worst = PetscMax(worst, eta);
+  }
+  PetscCall(AbutEstimatorGetUnknowns(scene->estimator, &n));
+  PetscCall(AbutRecorderSetInt(scene->recorder, "unknowns_estimator", n));
+  PetscCall(AbutRecorderSetReal(scene->recorder, "error.discretisation", worst));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutSceneRecordProbes_Private(AbutScene scene)
+{
+  static const char *const key[] = {"u1", "u2", "s11", "s22", "s12", "s33", "vm"};
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < scene->nprobes; ++i) {
+    PetscReal value[7];
+
+    PetscCall(AbutBodyGetPointValues(scene->probe[i].body, scene->probe[i].x, value));
+    for (PetscInt k = 0; k < 7; ++k) PetscCall(AbutSceneSetReal_Private(scene, "probe", scene->probe[i].name, key[k], value[k]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The keys of this cycle; consistent: the run agrees with itself (balance of forces, energy identity, no tension) */
+PetscErrorCode AbutSceneRecord_Private(AbutScene scene, PetscBool *consistent)
+{
+  PetscInt  sweeps = 1, start = 0;
+  PetscReal strain = 0.;
+
+  PetscFunctionBegin;
+  PetscCall(AbutRecorderSetString(scene->recorder, "verdict", scene->verdict));
+  PetscCall(AbutRecorderSetInt(scene->recorder, "cycles", scene->cycle + 1));
+  if (scene->snes) PetscCall(AbutInterfaceGetSweeps(scene->iface, &sweeps, &start));
+  else sweeps = scene->cycle + 1;
+  PetscCall(AbutRecorderSetInt(scene->recorder, "sweeps", sweeps));
+  PetscCall(AbutRecorderSetInt(scene->recorder, "sweeps_start", start));
+  PetscCall(AbutRecorderSetInt(scene->recorder, "sweeps_cycle", sweeps - scene->sweepsbefore));
+  scene->sweepsbefore = sweeps;
+  PetscCall(AbutSceneRecordBodies_Private(scene, &strain, consistent));
+  PetscCall(AbutSceneRecordPairs_Private(scene, strain, consistent));
+  PetscCall(AbutSceneRecordEstimates_Private(scene));
+  PetscCall(AbutSceneRecordProbes_Private(scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AbutSceneRecordTimes_Private(AbutScene scene)
+{
+  static const char *const key[ABUT_TIMES] = {"time.setup", "time.solve", "time.estimate", "time.adapt", "time.output"};
+  MPI_Comm                 comm = PetscObjectComm((PetscObject)scene);
+  PetscReal                seconds[ABUT_TIMES + 1], memory;
+  struct rusage            usage;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < ABUT_TIMES; ++i) seconds[i] = scene->seconds[i];
+  seconds[ABUT_TIMES] = scene->mark - scene->begun;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, seconds, ABUT_TIMES + 1, MPIU_REAL, MPIU_MAX, comm));
+  PetscCall(AbutRecorderSetReal(scene->recorder, "time.total", seconds[ABUT_TIMES]));
+  for (PetscInt i = 0; i < ABUT_TIMES; ++i) PetscCall(AbutRecorderSetReal(scene->recorder, key[i], seconds[i]));
+  getrusage(RUSAGE_SELF, &usage);
+  memory = 1024. * usage.ru_maxrss;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &memory, 1, MPIU_REAL, MPIU_SUM, comm));
+  PetscCall(AbutRecorderSetReal(scene->recorder, "memory.peak", memory));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,195 @@
+#include <abut/private/sceneimpl.h> /*I "abutscene.h" I*/
+
+/* The combined algorithm, Fig. 2 of the paper: solve, estimate, mark, refine, until no cell is above the threshold */
+
+/* Seconds since the last call go to one account */
+PetscErrorCode AbutSceneClock_Private(AbutScene scene, AbutTime account)
+{
+  PetscLogDouble now;
+
+  PetscFunctionBegin;
+  PetscCall(PetscTime(&now));
+  scene->seconds[account] += now - scene->mark;
+  scene->mark = now;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The trace of this cycle's meshes: the start, or the last trace at the new nodes */
+static PetscErrorCode AbutSceneTrace_Private(AbutScene scene)
+{
+  PetscFunctionBegin;
+  PetscCall(AbutInterfaceSetUp(scene->iface));
+  if (scene->x || !scene->snes) PetscFunctionReturn(PETSC_SUCCESS); /* the meshes have stayed */
+  PetscCall(AbutInterfaceCreateVec(scene->iface, &scene->x));
+  PetscCall(AbutInterfaceSetSNES(scene->iface, scene->snes));
+  if (scene->cycle) PetscCall(AbutInterfaceTransferTrace(scene->iface, scene->x));
+  else PetscCall(AbutInterfaceComputeStart(scene->iface, (AbutStart)scene->start, scene->x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One SNES solve; interleaved, one sweep, after which the scene asks how far the traces moved on the same mesh */
+static PetscErrorCode AbutSceneLoop_Private(AbutScene scene, PetscBool *converged)
+{
+  Vec       before = NULL;
+  PetscReal change;
+
+  PetscFunctionBegin;
+  if (!scene->snes) { /* bodies without contact: one solve each */
+    for (PetscInt b = 0; b < scene->nbodies; ++b) PetscCall(AbutBodySolve(scene->body[b], NULL));
+    *converged     = PETSC_TRUE;
+    scene->verdict = "converged";
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (scene->interleave) {
+    PetscCall(VecDuplicate(scene->x, &before));
+    PetscCall(VecCopy(scene->x, before));
+  }
+  PetscCall(SNESSolve(scene->snes, NULL, scene->x));
+  PetscCall(AbutInterfaceGetVerdict(scene->iface, scene->snes, converged, &scene->verdict));
+  if (!*converged) PetscCall(AbutInterfaceSweepBest(scene->iface, scene->x));
+  if (scene->interleave && *converged) {
+    PetscCall(VecAYPX(before, -1., scene->x));
+    PetscCall(AbutInterfaceGetChange(scene->iface, before, scene->x, &change));
+    *converged = (PetscBool)(change <= scene->eps_u);
+  }
+  PetscCall(VecDestroy(&before));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Estimates every body that asks for it; marks, if there is an adaptor. The verdict is the worst over the bodies. */
+static PetscErrorCode AbutSceneEstimate_Private(AbutScene scene, PetscBool *marks[], AbutAdaptVerdict *verdict, PetscInt *nmarked)
+{
+  PetscFunctionBegin;
+  *verdict = ABUT_ADAPT_DONE;
+  *nmarked = 0;
+  for (PetscInt b = 0; b < scene->nbodies; ++b) {
+    const AbutMeshTopology *t;
+    AbutMesh                mesh;
+    AbutAdaptVerdict        one;
+    PetscInt                n;
+
+    marks[b] = NULL;
+    if (!scene->estimates[b]) continue;
+    PetscCall(VecDestroy(&scene->eta[b]));
+    PetscCall(AbutBodyCreateCellVec(scene->body[b], &scene->eta[b]));
+    PetscCall(AbutEstimatorEstimate(scene->estimator, scene->body[b], scene->eta[b]));
+    if (!scene->adaptor) continue;
+    PetscCall(AbutBodyGetMesh(scene->body[b], &mesh));
+    PetscCall(AbutMeshGetTopology(mesh, &t));
+    PetscCall(PetscMalloc1(t->ncells, &marks[b]));
+    PetscCall(AbutAdaptorMark(scene->adaptor, scene->body[b], scene->eta[b], marks[b], &n, &one));
+    *nmarked += n;
+    if (one == ABUT_ADAPT_REFINED && *verdict != ABUT_ADAPT_UNKNOWNS) *verdict = one;
+    else if (one != ABUT_ADAPT_REFINED && *verdict != ABUT_ADAPT_REFINED && one > *verdict) *verdict = one;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* New meshes; the trace crosses over by evaluation */
+static PetscErrorCode AbutSceneAdapt_Private(AbutScene scene, PetscBool *const marks[])
+{
+  PetscFunctionBegin;
+  if (scene->snes) {
+    PetscCall(AbutInterfaceKeepTrace(scene->iface, scene->x));
+    PetscCall(VecDestroy(&scene->x));
+    PetscCall(SNESReset(scene->snes));
+  }
+  for (PetscInt b = 0; b < scene->nbodies; ++b) {
+    AbutMesh mesh;
+
+    if (!marks[b]) continue;
+    PetscCall(AbutBodyGetMesh(scene->body[b], &mesh));
+    PetscCall(AbutMeshAdapt(mesh, marks[b]));
+    PetscCall(VecDestroy(&scene->eta[b]));
+  }
+  PetscCall(AbutInterfaceReset(scene->iface));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Is this the last cycle, and with which verdict? */
+static PetscBool AbutSceneEnds_Private(AbutScene scene, PetscBool converged, PetscBool consistent, AbutAdaptVerdict adapt)
+{
+  const PetscBool failed = (PetscBool)(strcmp(scene->verdict, "converged") != 0);
+
+  scene->status = failed ? 2 : 0;
+  if (failed) return PETSC_TRUE;
+  if (!scene->interleave && !consistent) {
+    scene->verdict = "inconsistent";
+    scene->status  = 2;
+    return PETSC_TRUE;
+  }
+  if (adapt == ABUT_ADAPT_REFINED) return PETSC_FALSE;
+  if (!converged) { /* interleaved: the meshes stand still, the traces not yet */
+    if (scene->cycle < 10000) return PETSC_FALSE;
+    scene->verdict = "max_iterations";
+    scene->status  = 2;
+    return PETSC_TRUE;
+  }
+  if (adapt != ABUT_ADAPT_DONE) {
+    scene->verdict = adapt == ABUT_ADAPT_LEVEL ? "limit_level" : "limit_unknowns";
+    scene->status  = 3;
+  }
+  return PETSC_TRUE;
+}
+
+static PetscErrorCode AbutSceneOutput_Private(AbutScene scene)
+{
+  PetscBool wants;
+
+  PetscFunctionBegin;
+  PetscCall(AbutRecorderEndCycle(scene->recorder));
+  PetscCall(AbutRecorderWantsFields(scene->recorder, &wants));
+  if (wants) PetscCall(AbutRecorderWriteFields(scene->recorder, scene->cycle, scene->nbodies, scene->body, scene->eta));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutSceneSolve - Runs the scene: solve, estimate, adapt, until nothing is left to refine or a limit is reached
+
+   Collective
+
+   Input Parameter:
+.  scene - the scene; set up if need be
+
+   Level: beginner
+
+   Notes:
+   By default the loop converges on each mesh before the error is estimated; with `-scene_interleave` a cycle is one sweep and one adaptation, as in Fig. 2
+   of the paper. A run that does not converge keeps and writes its last answer; see `AbutSceneGetExitStatus()`.
+
+.seealso: `AbutSceneSetFromOptions()`, `AbutSceneGetExitStatus()`
+@*/
+PetscErrorCode AbutSceneSolve(AbutScene scene)
+{
+  PetscBool        ends = PETSC_FALSE, converged, consistent, *marks[ABUT_MAX_NAMES] = {NULL};
+  AbutAdaptVerdict adapt;
+  PetscInt         nmarked;
+
+  PetscFunctionBegin;
+  PetscCall(AbutSceneSetUp(scene));
+  PetscCall(AbutScenePrintHeader_Private(scene));
+  for (scene->cycle = 0; !ends; ++scene->cycle) {
+    PetscCall(AbutSceneTrace_Private(scene));
+    PetscCall(AbutSceneClock_Private(scene, ABUT_TIME_SETUP));
+    PetscCall(AbutSceneLoop_Private(scene, &converged));
+    PetscCall(AbutSceneClock_Private(scene, ABUT_TIME_SOLVE));
+    PetscCall(AbutSceneEstimate_Private(scene, marks, &adapt, &nmarked));
+    PetscCall(AbutSceneClock_Private(scene, ABUT_TIME_ESTIMATE));
+    PetscCall(AbutSceneRecord_Private(scene, &consistent));
+    ends = AbutSceneEnds_Private(scene, converged, consistent, adapt);
+    PetscCall(AbutRecorderSetString(scene->recorder, "verdict", scene->verdict));
+    PetscCall(AbutSceneRecordTimes_Private(scene));
+    PetscCall(AbutScenePrintCycle_Private(scene, nmarked));
+    PetscCall(AbutSceneOutput_Private(scene));
+    PetscCall(AbutSceneClock_Private(scene, ABUT_TIME_OUTPUT));
+    if (!ends && adapt == ABUT_ADAPT_REFINED) PetscCall(AbutSceneAdapt_Private(scene, marks));
+    for (PetscInt b = 0; b < scene->nbodies; ++b) PetscCall(PetscFree(marks[b]));
+    PetscCall(AbutSceneClock_Private(scene, ABUT_TIME_ADAPT));
+  }
+  if (scene->snes) PetscCall(AbutRecorderWriteProfile(scene->recorder, scene->iface, scene->npairs, scene->pair));
+  PetscCall(AbutSceneClock_Private(scene, ABUT_TIME_OUTPUT));
+  PetscCall(AbutSceneRecordTimes_Private(scene));
+  PetscCall(AbutRecorderWrite(scene->recorder));
+  PetscCall(AbutScenePrintEnd_Private(scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

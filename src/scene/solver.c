@@ -1,0 +1,69 @@
+#include <abut/private/sceneimpl.h>
+
+/* The SNES of the scene: ddneumann by default, our tolerances, the user's options over them */
+
+/* Gives an option that the user has left out a default of ours, while the options are read */
+static PetscErrorCode AbutSceneDefault_Private(const char name[], const char value[], PetscBool *set)
+{
+  PetscBool has;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsHasName(NULL, NULL, name, &has));
+  *set = (PetscBool)!has;
+  if (*set) PetscCall(PetscOptionsSetValue(NULL, name, value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Anderson mixing on F has the mixing parameter of a relaxation: the automatic one. With ddneumann as its preconditioner it works on the left, where an
+   iteration is one sweep; on the right, PETSc's default, it would be two. */
+static PetscErrorCode AbutSceneAndersonOptions_Private(AbutScene scene)
+{
+  PetscBool   hasnpc, set;
+  const char *name;
+  char        value[64] = "left";
+  PetscReal   gamma;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-npc_snes_type", &hasnpc));
+  name = hasnpc ? "-snes_npc_side" : "-snes_anderson_beta";
+  if (!hasnpc) {
+    PetscCall(AbutInterfaceGetGamma(scene->iface, &gamma));
+    PetscCall(PetscSNPrintf(value, sizeof(value), "%.16g", (double)gamma));
+  }
+  PetscCall(AbutSceneDefault_Private(name, value, &set));
+  PetscCall(SNESSetFromOptions(scene->snes));
+  if (set) PetscCall(PetscOptionsClearValue(NULL, name));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AbutSceneSolverFromOptions_Private(AbutScene scene)
+{
+  MPI_Comm  comm      = PetscObjectComm((PetscObject)scene);
+  char      type[256] = SNESDDNEUMANN;
+  PetscReal gamma;
+  PetscBool hasgamma;
+  PetscErrorCode (*create)(SNES);
+
+  PetscFunctionBegin;
+  PetscCall(AbutLoopRegisterAll());
+  PetscCall(SNESCreate(comm, &scene->snes));
+  PetscCall(SNESSetTolerances(scene->snes, 0., 1e-8, 0., 10000, 1000000000)); /* no absolute tolerance: it would depend on the units */
+  PetscCall(PetscOptionsGetString(NULL, NULL, "-snes_type", type, sizeof(type), NULL));
+  PetscCall(PetscFunctionListFind(SNESList, type, &create));
+  AbutCheckInput(create, comm, "snes_type: there is no \"%s\"; the paper's loop is ddneumann, PETSc's are for example anderson, ngmres, qn", type);
+  AbutCheckInput(!scene->interleave || !strcmp(type, SNESDDNEUMANN), comm, "scene_interleave: needs -snes_type ddneumann; %s keeps a history that a new mesh makes void", type);
+  PetscObjectOptionsBegin((PetscObject)scene);
+  PetscCall(AbutOptionsEnum(PetscOptionsObject, "-snes_ddneumann_start", "First trace", AbutStarts, &scene->start, NULL));
+  PetscCall(AbutOptionsReal(PetscOptionsObject, "-snes_ddneumann_gamma", "Relaxation of a sweep, whatever accelerates it", &gamma, &hasgamma));
+  PetscOptionsEnd();
+  AbutCheckInput(!hasgamma || gamma > 0., comm, "snes_ddneumann_gamma: %g; give a positive number, or leave it out for 2/(2+C/theta)", (double)gamma);
+  if (hasgamma) PetscCall(AbutInterfaceSetGamma(scene->iface, gamma));
+  PetscCall(SNESSetType(scene->snes, SNESDDNEUMANN));
+  if (!strcmp(type, SNESANDERSON)) PetscCall(AbutSceneAndersonOptions_Private(scene));
+  else PetscCall(SNESSetFromOptions(scene->snes));
+  if (scene->interleave) { /* a cycle is one bare iteration; the scene itself tests the change of the traces */
+    PetscCall(SNESSetTolerances(scene->snes, 0., PETSC_DEFAULT, 0., 1, PETSC_DEFAULT));
+    PetscCall(SNESSetNormSchedule(scene->snes, SNES_NORM_NONE));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,292 @@
+#include <abut/private/sysimpl.h>
+
+/* The full name of a key as a user writes it, without the dash: prefix and option */
+static PetscErrorCode AbutOptionsKey_Private(AbutOptionItems PetscOptionsObject, const char opt[], char key[], size_t len)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(key, len, "%s%s", PetscOptionsObject->prefix ? PetscOptionsObject->prefix : "", opt + 1));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutOptionsString - Reads a text; like `PetscOptionsString()`
+
+   Logically Collective
+
+   Input Parameters:
++  PetscOptionsObject - the block begun by `PetscObjectOptionsBegin()`
+.  opt  - the key with its dash, without the prefix
+.  text - one line for `-help`
+-  len  - room in value
+
+   Output Parameters:
++  value - the text, unchanged if the key is not given
+-  set   - whether it was given, or `NULL`
+
+   Level: developer
+
+.seealso: `AbutOptionsReal()`, `AbutOptionsCheckAllRead()`
+@*/
+PetscErrorCode AbutOptionsString(AbutOptionItems PetscOptionsObject, const char opt[], const char text[], char value[], size_t len, PetscBool *set)
+{
+  PetscBool given;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsString(opt, text, NULL, value, value, len, &given));
+  if (set) *set = given;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Splits "a, b, c" into numbers and demands exactly n of them */
+static PetscErrorCode AbutOptionsNumbers_Private(AbutOptionItems PetscOptionsObject, const char opt[], const char text[], PetscInt n, PetscReal value[], PetscBool integer, PetscBool *set)
+{
+  char        given[1024] = "", key[256], *end;
+  const char *at = given;
+  PetscBool   flg;
+
+  PetscFunctionBegin;
+  PetscCall(AbutOptionsKey_Private(PetscOptionsObject, opt, key, sizeof(key)));
+  PetscCall(PetscOptionsString(opt, text, NULL, given, given, sizeof(given), &flg));
+  if (set) *set = flg;
+  if (!flg) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; i < n; ++i) {
+    const double v    = strtod(at, &end);
+    const int    last = i + 1 == n;
+
+    while (*end == ' ') ++end;
+    AbutCheckInput(end != at && *end == (last ? '\0' : ',') && PetscIsNormalReal(v ? v : 1.) && (!integer || (v == (double)(PetscInt)v)), PetscOptionsObject->comm,
+                   "%s: \"%s\" is not %s; give %s%s", key, given, n > 1 ? "a list of the right kind" : (integer ? "a whole number" : "a number"),
+                   n > 1 ? "as many numbers as wanted, separated by commas: " : "", n == 1 ? (integer ? "for example 8" : "for example 2.1e5") : text);
+    value[i] = v;
+    at       = end + 1;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutOptionsReals - Reads exactly n numbers separated by commas
+
+   Logically Collective
+
+   Input Parameters:
++  PetscOptionsObject - the block begun by `PetscObjectOptionsBegin()`
+.  opt  - the key with its dash, without the prefix
+.  text - one line for `-help`
+-  n    - how many
+
+   Output Parameters:
++  value - [n] the numbers, unchanged if the key is not given
+-  set   - whether it was given, or `NULL`
+
+   Level: developer
+
+.seealso: `AbutOptionsReal()`
+@*/
+PetscErrorCode AbutOptionsReals(AbutOptionItems PetscOptionsObject, const char opt[], const char text[], PetscInt n, PetscReal value[], PetscBool *set)
+{
+  PetscFunctionBegin;
+  PetscCall(AbutOptionsNumbers_Private(PetscOptionsObject, opt, text, n, value, PETSC_FALSE, set));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutOptionsReal - Reads a number
+
+   Logically Collective
+
+   Input Parameters:
++  PetscOptionsObject - the block begun by `PetscObjectOptionsBegin()`
+.  opt  - the key with its dash, without the prefix
+-  text - one line for `-help`
+
+   Output Parameters:
++  value - the number, unchanged if the key is not given
+-  set   - whether it was given, or `NULL`
+
+   Level: developer
+
+   Note:
+   Unlike `PetscOptionsReal()` a text that is not a finite number is reported with its key.
+
+.seealso: `AbutOptionsInt()`, `AbutOptionsReals()`
+@*/
+PetscErrorCode AbutOptionsReal(AbutOptionItems PetscOptionsObject, const char opt[], const char text[], PetscReal *value, PetscBool *set)
+{
+  PetscFunctionBegin;
+  PetscCall(AbutOptionsNumbers_Private(PetscOptionsObject, opt, text, 1, value, PETSC_FALSE, set));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutOptionsInts - Reads exactly n whole numbers separated by commas
+
+   Logically Collective
+
+   Input Parameters:
++  PetscOptionsObject - the block begun by `PetscObjectOptionsBegin()`
+.  opt  - the key with its dash, without the prefix
+.  text - one line for `-help`
+-  n    - how many, at most 8
+
+   Output Parameters:
++  value - [n] the numbers, unchanged if the key is not given
+-  set   - whether it was given, or `NULL`
+
+   Level: developer
+
+.seealso: `AbutOptionsInt()`
+@*/
+PetscErrorCode AbutOptionsInts(AbutOptionItems PetscOptionsObject, const char opt[], const char text[], PetscInt n, PetscInt value[], PetscBool *set)
+{
+  PetscReal v[8];
+  PetscBool given;
+
+  PetscFunctionBegin;
+  PetscCheck(n <= 8, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "At most 8 whole numbers in one key");
+  PetscCall(AbutOptionsNumbers_Private(PetscOptionsObject, opt, text, n, v, PETSC_TRUE, &given));
+  for (PetscInt i = 0; given && i < n; ++i) value[i] = (PetscInt)v[i];
+  if (set) *set = given;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutOptionsInt - Reads a whole number
+
+   Logically Collective
+
+   Input Parameters:
++  PetscOptionsObject - the block begun by `PetscObjectOptionsBegin()`
+.  opt  - the key with its dash, without the prefix
+-  text - one line for `-help`
+
+   Output Parameters:
++  value - the number, unchanged if the key is not given
+-  set   - whether it was given, or `NULL`
+
+   Level: developer
+
+.seealso: `AbutOptionsReal()`
+@*/
+PetscErrorCode AbutOptionsInt(AbutOptionItems PetscOptionsObject, const char opt[], const char text[], PetscInt *value, PetscBool *set)
+{
+  PetscFunctionBegin;
+  PetscCall(AbutOptionsInts(PetscOptionsObject, opt, text, 1, value, set));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutOptionsEnum - Reads one of a list of names
+
+   Logically Collective
+
+   Input Parameters:
++  PetscOptionsObject - the block begun by `PetscObjectOptionsBegin()`
+.  opt   - the key with its dash, without the prefix
+.  text  - one line for `-help`
+-  names - the names, ended by `NULL`
+
+   Output Parameters:
++  value - the index of the name, unchanged if the key is not given
+-  set   - whether it was given, or `NULL`
+
+   Level: developer
+
+.seealso: `AbutOptionsString()`
+@*/
+PetscErrorCode AbutOptionsEnum(AbutOptionItems PetscOptionsObject, const char opt[], const char text[], const char *const names[], PetscInt *value, PetscBool *set)
+{
+  char      given[256] = "", key[256], all[512] = "";
+  PetscBool flg, match;
+
+  PetscFunctionBegin;
+  PetscCall(AbutOptionsKey_Private(PetscOptionsObject, opt, key, sizeof(key)));
+  PetscCall(PetscOptionsString(opt, text, NULL, given, given, sizeof(given), &flg));
+  if (set) *set = flg;
+  if (!flg) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; names[i]; ++i) {
+    PetscCall(PetscStrcasecmp(given, names[i], &match));
+    if (match) {
+      *value = i;
+      PetscFunctionReturn(PETSC_SUCCESS);
+    }
+    PetscCall(PetscStrlcat(all, i ? ", " : "", sizeof(all)));
+    PetscCall(PetscStrlcat(all, names[i], sizeof(all)));
+  }
+  SETERRQ(PetscOptionsObject->comm, PETSC_ERR_USER_INPUT, "%s: there is no \"%s\"; give one of: %s", key, given, all);
+}
+
+/*@C
+   AbutOptionsBool - Reads yes or no; the key alone means yes
+
+   Logically Collective
+
+   Input Parameters:
++  PetscOptionsObject - the block begun by `PetscObjectOptionsBegin()`
+.  opt  - the key with its dash, without the prefix
+-  text - one line for `-help`
+
+   Output Parameters:
++  value - the answer, unchanged if the key is not given
+-  set   - whether it was given, or `NULL`
+
+   Level: developer
+
+.seealso: `AbutOptionsEnum()`
+@*/
+PetscErrorCode AbutOptionsBool(AbutOptionItems PetscOptionsObject, const char opt[], const char text[], PetscBool *value, PetscBool *set)
+{
+  static const char *const words[] = {"no", "yes", "false", "true", "0", "1", "off", "on", "", NULL};
+  PetscInt                 word    = *value;
+  PetscBool                given;
+
+  PetscFunctionBegin;
+  PetscCall(AbutOptionsEnum(PetscOptionsObject, opt, text, words, &word, &given));
+  if (given) *value = words[word][0] && !(word % 2) ? PETSC_FALSE : PETSC_TRUE;
+  if (set) *set = given;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Options that PETSc reads before we start or after we end, or when a factor, a viewer or a log is made */
+static PetscBool AbutOptionsIsLate_Private(const char name[])
+{
+  static const char *const start[] = {"log_", "malloc", "objects_dump", "options_", "memory_", "on_error", "start_in_", "fp_trap", "help", "version", "info", "skip_petscrc", "checkstack", "get_total", NULL};
+  static const char *const inside[] = {"mat_mumps_", "_view", "_monitor", "pc_hypre_", "_converged_reason", NULL};
+
+  for (PetscInt i = 0; start[i]; ++i)
+    if (!strncmp(name, start[i], strlen(start[i]))) return PETSC_TRUE;
+  for (PetscInt i = 0; inside[i]; ++i)
+    if (strstr(name, inside[i])) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/*@C
+   AbutOptionsCheckAllRead - Ends the run if some option was read by nobody: a misspelt key would answer another question
+
+   Collective
+
+   Input Parameters:
++  comm  - the communicator
+-  final - `PETSC_TRUE` at the end of a run, when also the options that PETSc reads late must have been read
+
+   Level: developer
+
+.seealso: `AbutOptionsReal()`
+@*/
+PetscErrorCode AbutOptionsCheckAllRead(MPI_Comm comm, PetscBool final)
+{
+  PetscInt n, nbad = 0;
+  char   **names, **values, list[1024] = "";
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
+  for (PetscInt i = 0; i < n; ++i) {
+    const PetscBool late = AbutOptionsIsLate_Private(names[i]);
+
+    if (late && (!final || !strncmp(names[i], "objects_dump", 12) || !strncmp(names[i], "malloc", 6) || !strncmp(names[i], "options_", 8))) continue;
+    PetscCall(PetscStrlcat(list, nbad++ ? ", " : "", sizeof(list)));
+    PetscCall(PetscStrlcat(list, names[i], sizeof(list)));
+  }
+  PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
+  AbutCheckInput(!nbad, comm, "%s: nothing in this scene reads %s; check the spelling (-help lists the keys), and that the scene names the body, pair or effect it belongs to", list, nbad > 1 ? "these keys" : "this key");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

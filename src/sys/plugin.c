@@ -1,0 +1,222 @@
+#ifndef _GNU_SOURCE
+  #define _GNU_SOURCE /* dladdr() */
+#endif
+#include <dirent.h>
+#include <dlfcn.h>
+#include <abut/private/pluginimpl.h> /*I "abutsys.h" I*/
+
+#define ABUT_PLUGIN_SUFFIX "." PETSC_SLSUFFIX
+
+/* Appends an item to a list like "fembem, zz" unless it is there already */
+PetscErrorCode AbutListAddItem_Private(char list[], size_t len, const char item[])
+{
+  const char *at;
+  size_t      n;
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrlen(item, &n));
+  for (at = strstr(list, item); at; at = strstr(at + 1, item)) {
+    if ((at == list || at[-1] == ' ') && (!at[n] || at[n] == ',')) PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (list[0]) PetscCall(PetscStrlcat(list, ", ", len));
+  PetscCall(PetscStrlcat(list, item, len));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Where plugins are looked for: `-plugin_path`, or else the folder of the library this function is in, and its subfolder `abut` */
+static PetscErrorCode AbutPluginGetFolders_Private(char folder[2][PETSC_MAX_PATH_LEN], PetscInt *n)
+{
+  PetscBool set, dir;
+  Dl_info   info;
+  char     *slash;
+
+  PetscFunctionBegin;
+  *n = 1;
+  PetscCall(PetscOptionsGetString(NULL, NULL, "-plugin_path", folder[0], PETSC_MAX_PATH_LEN, &set));
+  if (set) {
+    PetscCall(PetscTestDirectory(folder[0], 'r', &dir));
+    AbutCheckInput(dir, PETSC_COMM_WORLD, "plugin_path: no folder \"%s\"; it is the folder that holds the lib*%s of the plugins", folder[0],
+                   ABUT_PLUGIN_SUFFIX);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  *n = 0;
+  if (!dladdr((void *)(uintptr_t)AbutPluginLoad, &info) || !info.dli_fname) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscStrncpy(folder[0], info.dli_fname, PETSC_MAX_PATH_LEN));
+  slash = strrchr(folder[0], '/');
+  if (slash) *slash = 0;
+  else PetscCall(PetscStrncpy(folder[0], ".", PETSC_MAX_PATH_LEN));
+  PetscCall(PetscSNPrintf(folder[1], PETSC_MAX_PATH_LEN, "%s/abut", folder[0]));
+  *n = 2;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* PETSc would open a library without a register function and say nothing: find out first what is wrong with it, "" if nothing is */
+static PetscErrorCode AbutPluginDiagnose_Private(const char path[], char why[], size_t len)
+{
+  const char *base = strrchr(path, '/');
+  char        symbol[PETSC_MAX_PATH_LEN], *dot;
+  void       *handle;
+
+  PetscFunctionBegin;
+  why[0] = 0;
+  base   = base ? base + 1 : path;
+  if (!strncmp(base, "lib", 3)) base += 3;
+  PetscCall(PetscSNPrintf(symbol, sizeof(symbol), "PetscDLLibraryRegister_%s", base));
+  dot = strchr(symbol, '.');
+  if (dot) *dot = 0;
+  for (char *c = symbol; *c; ++c) {
+    if (*c == '-') *c = '_';
+  }
+  handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+  if (!handle) PetscCall(PetscSNPrintf(why, len, "cannot open \"%s\": %s", path, dlerror()));
+  else {
+    if (!dlsym(handle, symbol)) PetscCall(PetscSNPrintf(why, len, "\"%s\" is not a plugin of Abut: it has no function %s()", path, symbol));
+    (void)dlclose(handle);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The file is there on every rank: open it on every rank, or fail on every rank */
+static PetscErrorCode AbutPluginOpen_Private(MPI_Comm comm, const char path[])
+{
+  char        why[2 * PETSC_MAX_PATH_LEN];
+  PetscMPIInt bad, rank, worst;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCall(AbutPluginDiagnose_Private(path, why, sizeof(why)));
+  bad = why[0] ? rank : -1;
+  PetscCallMPI(MPI_Allreduce(&bad, &worst, 1, MPI_INT, MPI_MAX, comm));
+  if (worst >= 0) PetscCallMPI(MPI_Bcast(why, (PetscMPIInt)sizeof(why), MPI_CHAR, worst, comm));
+  AbutCheckInput(worst < 0, comm, "plugin: %s", why);
+  PetscCall(PetscDLLibraryAppend(comm, &PetscDLLibrariesLoaded, path));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutPluginTestFile_Private(MPI_Comm comm, const char path[], PetscBool *found)
+{
+  PetscBool here;
+
+  PetscFunctionBegin;
+  PetscCall(PetscTestFile(path, 'r', &here));
+  PetscCallMPI(MPI_Allreduce(&here, found, 1, MPIU_BOOL, MPI_LAND, comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutPluginAppend - Opens the shared library of a plugin, which then registers what it brings
+
+   Collective
+
+   Input Parameters:
++  comm - all ranks that will use the plugin
+-  path - the file, `path/to/libNAME.so`
+
+   Level: intermediate
+
+   Notes:
+   PETSc calls the function `PetscDLLibraryRegister_NAME()` of the library; a library without it is refused. `abut -plugin path,path` comes
+   here.
+
+   A library is never closed before the end of the run, and opening it twice does nothing.
+
+.seealso: `AbutPluginLoad()`, `AbutEstimatorRegister()`
+@*/
+PetscErrorCode AbutPluginAppend(MPI_Comm comm, const char path[])
+{
+  PetscBool found;
+
+  PetscFunctionBegin;
+  PetscCall(AbutPluginTestFile_Private(comm, path, &found));
+  AbutCheckInput(found, comm, "plugin: no file \"%s\"", path);
+  PetscCall(AbutPluginOpen_Private(comm, path));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutPluginLoad - Looks for the plugin that brings a type, by the name of its file, and opens it
+
+   Collective
+
+   Input Parameters:
++  comm - all ranks that will use the plugin
+.  kind - what it is a kind of, such as "estimator"
+-  name - name of the type, such as "zz": the file is `libestimator_zz.so`
+
+   Output Parameter:
+.  found - whether there is such a file; it is no error if there is none
+
+   Options Database Key:
+.  -plugin_path folder - where to look, instead of the folder of libabut.so and its subfolder `abut`
+
+   Level: developer
+
+.seealso: `AbutPluginAppend()`, `AbutPluginListAvailable()`, `AbutEstimatorSetType()`
+@*/
+PetscErrorCode AbutPluginLoad(MPI_Comm comm, const char kind[], const char name[], PetscBool *found)
+{
+  char     folder[2][PETSC_MAX_PATH_LEN], path[2 * PETSC_MAX_PATH_LEN];
+  PetscInt n;
+
+  PetscFunctionBegin;
+  *found = PETSC_FALSE;
+  if (!name[0] || strchr(name, '/')) PetscFunctionReturn(PETSC_SUCCESS); /* a name, not a path */
+  PetscCall(AbutPluginGetFolders_Private(folder, &n));
+  for (PetscInt i = 0; i < n && !*found; ++i) {
+    PetscCall(PetscSNPrintf(path, sizeof(path), "%s/lib%s_%s" ABUT_PLUGIN_SUFFIX, folder[i], kind, name));
+    PetscCall(AbutPluginTestFile_Private(comm, path, found));
+    if (*found) PetscCall(AbutPluginOpen_Private(comm, path));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutPluginListAvailable - Names the plugins of a kind that `AbutPluginLoad()` would find
+
+   Not Collective
+
+   Input Parameters:
++  kind - such as "estimator"
+-  len  - length of `names`
+
+   Output Parameter:
+.  names - such as "fembem, zz", in alphabetical order; empty if there are none
+
+   Level: developer
+
+   Note:
+   Only looks at names of files; opens none of them.
+
+.seealso: `AbutPluginLoad()`
+@*/
+PetscErrorCode AbutPluginListAvailable(const char kind[], char names[], size_t len)
+{
+  char     folder[2][PETSC_MAX_PATH_LEN], prefix[64], name[256];
+  PetscInt n;
+  size_t   np, nn;
+
+  PetscFunctionBegin;
+  names[0] = 0;
+  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "lib%s_", kind));
+  PetscCall(PetscStrlen(prefix, &np));
+  PetscCall(AbutPluginGetFolders_Private(folder, &n));
+  for (PetscInt i = 0; i < n; ++i) {
+    struct dirent **entry = NULL;
+    const int       count = scandir(folder[i], &entry, NULL, alphasort); /* -1 if there is no such folder */
+
+    for (int k = 0; k < count; ++k) {
+      PetscBool suffix;
+
+      PetscCall(PetscStrendswith(entry[k]->d_name, ABUT_PLUGIN_SUFFIX, &suffix));
+      if (suffix && !strncmp(entry[k]->d_name, prefix, np)) {
+        PetscCall(PetscStrncpy(name, entry[k]->d_name + np, sizeof(name)));
+        PetscCall(PetscStrlen(name, &nn));
+        name[nn - strlen(ABUT_PLUGIN_SUFFIX)] = 0;
+        PetscCall(AbutListAddItem_Private(names, len, name));
+      }
+      free(entry[k]);
+    }
+    free(entry);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

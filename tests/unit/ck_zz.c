@@ -1,0 +1,323 @@
+#include "ck_box.h"
+#include <complex.h>
+#undef I
+#include <patch.h>
+#include <zz.h>
+
+/* The patch recovery against exact stresses. Solutions without body force come from two holomorphic functions (Kolosov and Muskhelishvili):
+   2 mu (u1 + i u2) = kappa phi - z conj(phi') - conj(psi), s11 + s22 = 4 Re phi', s22 - s11 + 2 i s12 = 2 (conj(z) phi'' + psi') */
+
+static const PetscReal nu = 0.3; /* and E = 1, as in CkBox() */
+
+typedef double complex Complex;
+typedef struct {
+  Complex phi, dphi, ddphi, psi, dpsi;
+} Potentials;
+
+static Complex Point(const PetscReal x[2])
+{
+  return x[0] + _Complex_I * x[1];
+}
+
+/* Stress linear in x and y: bending */
+static Potentials Linear(const PetscReal x[2])
+{
+  const Complex    z = Point(x), a = 1. + 0.5 * _Complex_I, b = -0.3 + 0.2 * _Complex_I;
+  const Potentials p = {a * z * z, 2. * a * z, 2. * a, b * z * z, 2. * b * z};
+
+  return p;
+}
+
+static Potentials Smooth(const PetscReal x[2])
+{
+  const Complex    z = Point(x), e = cexp(1.5 * z), k = 0.7 + 0.4 * _Complex_I;
+  const Potentials p = {e, 1.5 * e, 2.25 * e, csin(2. * z) * k, 2. * ccos(2. * z) * k};
+
+  return p;
+}
+
+static Potentials (*exact)(const PetscReal[2]);
+
+static PetscErrorCode Displacement1(const PetscReal x[2], PetscReal *value, PETSC_UNUSED void *ctx)
+{
+  const Potentials p = (*exact)(x);
+
+  *value = creal((3. - 4. * nu) * p.phi - Point(x) * conj(p.dphi) - conj(p.psi)) * (1. + nu);
+  return PETSC_SUCCESS;
+}
+
+static PetscErrorCode Displacement2(const PetscReal x[2], PetscReal *value, PETSC_UNUSED void *ctx)
+{
+  const Potentials p = (*exact)(x);
+
+  *value = cimag((3. - 4. * nu) * p.phi - Point(x) * conj(p.dphi) - conj(p.psi)) * (1. + nu);
+  return PETSC_SUCCESS;
+}
+
+static void ExactStress(const PetscReal x[2], PetscReal s[3])
+{
+  const Potentials p   = (*exact)(x);
+  const Complex    dev = 2. * (conj(Point(x)) * p.ddphi + p.dpsi);
+
+  s[0] = 2. * creal(p.dphi) - 0.5 * creal(dev);
+  s[1] = 2. * creal(p.dphi) + 0.5 * creal(dev);
+  s[2] = 0.5 * cimag(dev);
+}
+
+static PetscReal Distance2(const PetscReal s[3], const PetscReal r[3])
+{
+  return PetscSqr(s[0] - r[0]) + PetscSqr(s[1] - r[1]) + 2. * PetscSqr(s[2] - r[2]);
+}
+
+/* Adds to sum the squares of s_F - s*, s_rec - s*, s_rec - s_F and s* over a cell, at 4x4 points (collapsed to the triangle) */
+static void AddCell(AbutBody body, const AbutMeshTopology *t, PetscInt c, const PetscReal nodal[], PetscReal sum[4])
+{
+  static const PetscReal gx[4]   = {-0.861136311594053, -0.339981043584856, 0.339981043584856, 0.861136311594053};
+  static const PetscReal gw[4]   = {0.347854845137454, 0.652145154862546, 0.652145154862546, 0.347854845137454};
+  const PetscReal        zero[3] = {0., 0., 0.};
+  AbutMesh               mesh;
+
+  CkOk(AbutBodyGetMesh(body, &mesh));
+  for (PetscInt q = 0; q < 16; ++q) {
+    PetscReal xi[2] = {gx[q % 4], gx[q / 4]}, w = gw[q % 4] * gw[q / 4], x[2], N[4], G[8], det, fe[3], ex[3], rec[3] = {0., 0., 0.};
+
+    if (t->corners == 3) {
+      w *= 0.125 * (1. - xi[0]);
+      xi[1] = 0.25 * (1. + xi[1]) * (1. - xi[0]);
+      xi[0] = 0.5 * (1. + xi[0]);
+    }
+    CkOk(AbutMeshMapCell(mesh, c, xi, x, N, G, &det));
+    CkOk(AbutBodyGetCellStress(body, c, xi, fe));
+    ExactStress(x, ex);
+    for (PetscInt k = 0; k < t->corners; ++k)
+      for (PetscInt i = 0; i < 3; ++i) rec[i] += N[k] * nodal[3 * t->cell[t->corners * c + k] + i];
+    sum[0] += w * det * Distance2(fe, ex);
+    sum[1] += w * det * Distance2(rec, ex);
+    sum[2] += w * det * Distance2(rec, fe);
+    sum[3] += w * det * Distance2(ex, zero);
+  }
+}
+
+/* Of a solved body: relative error of the finite elements; saturation constant C, eq. (23) of the paper, and effectivity of the recovery */
+static void Measure(AbutBody body, PetscReal *error, PetscReal *C, PetscReal *effectivity)
+{
+  const AbutMeshTopology *t      = CkTopology(body);
+  PetscReal               sum[4] = {0., 0., 0., 0.}, *nodal;
+
+  CkOk(PetscMalloc1(3 * t->nvertices, &nodal));
+  CkOk(AbutEstimatorRecover_ZZ(body, t, nodal));
+  for (PetscInt c = 0; c < t->ncells; ++c) AddCell(body, t, c, nodal, sum);
+  CkOk(MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPIU_REAL, MPI_SUM, PETSC_COMM_WORLD));
+  *error       = PetscSqrtReal(sum[0] / sum[3]);
+  *C           = PetscSqrtReal(sum[1] / sum[0]);
+  *effectivity = PetscSqrtReal(sum[2] / sum[0]);
+  CkOk(PetscFree(nodal));
+}
+
+static AbutBody Solved(MPI_Comm comm, Potentials (*solution)(const PetscReal[2]), AbutShape shape, PetscInt nx, PetscInt ny,
+                       PetscInt refine)
+{
+  AbutBody body;
+
+  exact = solution;
+  body  = CkBox(comm, shape, (PetscReal)nx / ny, nx, ny, Displacement1, Displacement2);
+  for (PetscInt r = 0; r < refine; ++r) CkRefine(body, 0.5, 0.5, 0.3 / (r + 1));
+  CkOk(AbutBodySolve(body, NULL));
+  return body;
+}
+
+static void Estimate(AbutBody body, PetscReal *total, PetscReal *largest)
+{
+  AbutEstimator est;
+  Vec           eta;
+
+  CkOk(AbutEstimatorCreate(PetscObjectComm((PetscObject)body), &est));
+  CkOk(AbutEstimatorSetType(est, ABUTESTIMATORZZ)); /* opens the plugin */
+  CkOk(AbutBodyCreateCellVec(body, &eta));
+  CkOk(AbutEstimatorEstimate(est, body, eta));
+  CkOk(AbutEstimatorGetNorms(body, eta, total, largest));
+  CkOk(VecDestroy(&eta));
+  CkOk(AbutEstimatorDestroy(&est));
+}
+
+START_TEST(a_patch_reproduces_what_its_terms_can)
+{
+  static const PetscReal at[7][2] = {
+    {-1.,  -0.9},
+    {0.8,  -1.1},
+    {1.2,  0.7 },
+    {-0.9, 1.  },
+    {0.1,  0.3 },
+    {0.5,  0.5 },
+    {-0.2, 1.4 }
+  };
+  const PetscReal unit                  = _i % 2 ? 1e-5 : 1e3; /* of length: it must not matter */
+  const PetscInt  terms                 = _i < 2 ? 3 : 4;
+  PetscReal       m[ABUT_PATCH_MOMENTS] = {0.}, coef[ABUT_PATCH_COEFS];
+  PetscBool       plane                 = PETSC_FALSE;
+
+  for (PetscInt i = 0; i < 7; ++i) {
+    const PetscReal x = at[i][0], y = at[i][1], xy = terms == 4 ? x * y : 0., d[2] = {unit * x, unit * y};
+    const PetscReal s[3] = {1. + 2. * x - y + xy, -3. + y - xy, x + 0.5 * xy};
+
+    AbutPatchAdd_Private(d, s, m);
+  }
+  AbutPatchFit_Private(terms, m, coef, &plane);
+  ck_assert(plane);
+  ck_assert_double_eq_tol(coef[0], 1., 1e-12);
+  ck_assert_double_eq_tol(coef[1] * unit, 2., 1e-12);
+  ck_assert_double_eq_tol(coef[2] * unit, -1., 1e-12);
+  ck_assert_double_eq_tol(coef[3] * unit * unit, terms == 4 ? 1. : 0., 1e-12);
+  ck_assert_double_eq_tol(coef[4], -3., 1e-12);
+  ck_assert_double_eq_tol(coef[8], 0., 1e-12);
+}
+END_TEST
+
+START_TEST(a_poor_patch_leaves_out_what_it_cannot_tell)
+{
+  PetscReal m[ABUT_PATCH_MOMENTS] = {0.}, coef[ABUT_PATCH_COEFS];
+  PetscReal s[3] = {5., 0., 0.}, d[2] = {-1., 0.5};
+  PetscBool plane = PETSC_TRUE;
+
+  AbutPatchAdd_Private(d, s, m); /* one sample: a constant */
+  AbutPatchFit_Private(4, m, coef, &plane);
+  ck_assert(!plane);
+  ck_assert_double_eq_tol(coef[0], 5., 1e-14);
+  ck_assert_double_eq(coef[1], 0.);
+  d[0] = 1.;
+  s[0] = 9.;
+  AbutPatchAdd_Private(d, s, m); /* two samples side by side: linear along them */
+  AbutPatchFit_Private(4, m, coef, &plane);
+  ck_assert(!plane);
+  ck_assert_double_eq_tol(coef[0], 7., 1e-14);
+  ck_assert_double_eq_tol(coef[1], 2., 1e-14);
+  ck_assert_double_eq(coef[2], 0.);
+}
+END_TEST
+
+START_TEST(a_moved_polynomial_has_the_same_values)
+{
+  const PetscReal a[ABUT_PATCH_COEFS] = {1., 2., 3., 4., -1., 0.5, 0., 2., 0., 0., 1., -1.}, d[2] = {0.3, -0.7}, x = 1.1, y = 0.4;
+  PetscReal       b[ABUT_PATCH_COEFS];
+
+  AbutPatchShift_Private(a, d, b);
+  for (PetscInt s = 0; s < 12; s += 4)
+    ck_assert_double_eq_tol(a[s] + a[s + 1] * (x + d[0]) + a[s + 2] * (y + d[1]) + a[s + 3] * (x + d[0]) * (y + d[1]),
+                            b[s] + b[s + 1] * x + b[s + 2] * y + b[s + 3] * x * y, 1e-14);
+}
+END_TEST
+
+/* On a uniform mesh the finite-element stress of a quadratic displacement is exact where it is sampled: the recovered one is exact */
+START_TEST(a_linear_stress_is_recovered_exactly_on_a_uniform_mesh)
+{
+  AbutBody  body = Solved(PETSC_COMM_WORLD, Linear, (AbutShape)_i, 6, 6, 0);
+  PetscReal error, C, effectivity;
+
+  Measure(body, &error, &C, &effectivity);
+  ck_assert_double_gt(error, 1e-2);
+  ck_assert_double_lt(C, 1e-10);
+  ck_assert_double_eq_tol(effectivity, 1., 1e-10);
+  CkOk(AbutBodyDestroy(&body));
+}
+END_TEST
+
+START_TEST(a_smooth_stress_is_recovered_an_order_better)
+{
+  PetscReal error, C[2], effectivity;
+
+  for (PetscInt k = 0; k < 2; ++k) {
+    AbutBody body = Solved(PETSC_COMM_WORLD, Smooth, (AbutShape)_i, 8 << k, 8 << k, 0);
+
+    Measure(body, &error, &C[k], &effectivity);
+    PetscPrintf(PETSC_COMM_WORLD, "%s 1/%d: error %.3e, C %.3f, effectivity %.3f\n", _i ? "P1" : "Q1", 8 << k, (double)error, (double)C[k],
+                (double)effectivity);
+    ck_assert_double_lt(C[k], 0.3);
+    ck_assert_double_gt(effectivity, 0.95);
+    ck_assert_double_lt(effectivity, 1.05);
+    CkOk(AbutBodyDestroy(&body));
+  }
+  ck_assert_double_gt(C[0] / C[1], 1.6); /* 2 is one order */
+  ck_assert_double_lt(C[0] / C[1], 2.2);
+}
+END_TEST
+
+START_TEST(a_locally_refined_mesh_is_judged_as_well)
+{
+  PetscReal error, C, effectivity;
+
+  for (PetscInt k = 0; k < 2; ++k) {
+    AbutBody body = Solved(PETSC_COMM_WORLD, Smooth, (AbutShape)_i, 8 << k, 8 << k, 3);
+
+    Measure(body, &error, &C, &effectivity);
+    PetscPrintf(PETSC_COMM_WORLD, "%s 1/%d with three levels more: error %.3e, C %.3f, effectivity %.3f\n", _i ? "P1" : "Q1", 8 << k,
+                (double)error, (double)C, (double)effectivity);
+    ck_assert_double_lt(C, 0.3);
+    ck_assert_double_gt(effectivity, 0.9);
+    ck_assert_double_lt(effectivity, 1.1);
+    CkOk(AbutBodyDestroy(&body));
+  }
+}
+END_TEST
+
+START_TEST(all_numbers_of_ranks_give_the_same_estimate)
+{
+  AbutBody  all = Solved(PETSC_COMM_WORLD, Smooth, (AbutShape)_i, 8, 8, 3), one = Solved(PETSC_COMM_SELF, Smooth, (AbutShape)_i, 8, 8, 3);
+  PetscReal total[2], largest[2];
+
+  Estimate(all, &total[0], &largest[0]);
+  Estimate(one, &total[1], &largest[1]);
+  ck_assert_double_eq_tol(total[0], total[1], 1e-10 * total[1]);
+  ck_assert_double_eq_tol(largest[0], largest[1], 1e-10 * largest[1]);
+  CkOk(AbutBodyDestroy(&all));
+  CkOk(AbutBodyDestroy(&one));
+}
+END_TEST
+
+START_TEST(the_estimate_is_close_to_the_error)
+{
+  AbutBody  body = Solved(PETSC_COMM_WORLD, Smooth, (AbutShape)_i, 16, 16, 0);
+  PetscReal error, C, effectivity, total, largest;
+
+  Measure(body, &error, &C, &effectivity);
+  Estimate(body, &total, &largest);
+  ck_assert_double_eq_tol(total, error, 0.02 * error);
+  ck_assert_double_gt(largest, total);
+  CkOk(AbutBodyDestroy(&body));
+}
+END_TEST
+
+START_TEST(a_body_without_inner_vertices_has_an_estimate)
+{
+  for (PetscInt nx = 1; nx <= 8; nx += 7) {
+    AbutBody  body  = Solved(PETSC_COMM_WORLD, Smooth, (AbutShape)_i, nx, 1, 0);
+    PetscReal total = -1., largest = -1.;
+
+    Estimate(body, &total, &largest);
+    ck_assert(!PetscIsInfOrNanReal(total) && total >= 0.);
+    if (nx > 1) ck_assert_double_gt(total, 0.01);
+    CkOk(AbutBodyDestroy(&body));
+  }
+}
+END_TEST
+
+int main(int argc, char **argv)
+{
+  Suite *suite = suite_create("zz");
+  TCase *tests = tcase_create("recovery");
+  int    status;
+
+  PetscCall(AbutInitialize(&argc, &argv, NULL));
+  tcase_add_loop_test(tests, a_patch_reproduces_what_its_terms_can, 0, 4);
+  tcase_add_test(tests, a_poor_patch_leaves_out_what_it_cannot_tell);
+  tcase_add_test(tests, a_moved_polynomial_has_the_same_values);
+  tcase_add_loop_test(tests, a_linear_stress_is_recovered_exactly_on_a_uniform_mesh, 0, 2);
+  tcase_add_loop_test(tests, a_smooth_stress_is_recovered_an_order_better, 0, 2);
+  tcase_add_loop_test(tests, a_locally_refined_mesh_is_judged_as_well, 0, 2);
+  tcase_add_loop_test(tests, all_numbers_of_ranks_give_the_same_estimate, 0, 2);
+  tcase_add_loop_test(tests, the_estimate_is_close_to_the_error, 0, 2);
+  tcase_add_loop_test(tests, a_body_without_inner_vertices_has_an_estimate, 0, 2);
+  suite_add_tcase(suite, tests);
+  status = CkRun(suite);
+  PetscCall(AbutFinalize());
+  return status;
+}

@@ -1,0 +1,136 @@
+#pragma once
+
+#include "fembemimpl.h"
+
+/* Boundaries made by hand for the tests of estimator_fembem: rectangles, a hole if wanted, any condition on any side, data of a field */
+
+/* A stress field in balance with its displacement; t and u at a point */
+typedef struct {
+  PetscReal young, poisson;
+  void (*stress)(const PetscReal x[2], PetscReal s[3]);
+  void (*displacement)(PetscReal young, PetscReal poisson, const PetscReal x[2], PetscReal u[2]);
+} Field;
+
+/* Uniform stress, and a rotation */
+static const PetscReal uniform_stress[3] = {1.2, -0.7, 0.45};
+static inline void     UniformStress(PETSC_UNUSED const PetscReal x[2], PetscReal s[3])
+{
+  for (PetscInt k = 0; k < 3; ++k) s[k] = uniform_stress[k];
+}
+static inline void UniformDisplacement(PetscReal E, PetscReal nu, const PetscReal x[2], PetscReal u[2])
+{
+  const PetscReal *s = uniform_stress, e11 = (1. + nu) / E * ((1. - nu) * s[0] - nu * s[1]),
+                  e22 = (1. + nu) / E * ((1. - nu) * s[1] - nu * s[0]), e12 = (1. + nu) / E * s[2];
+
+  u[0] = 0.3 / E + e11 * x[0] + (e12 - 0.2 / E) * x[1];
+  u[1] = -0.1 / E + (e12 + 0.2 / E) * x[0] + e22 * x[1];
+}
+
+/* Pure bending: s11 = x2 */
+static inline void BendingStress(const PetscReal x[2], PetscReal s[3])
+{
+  s[0] = x[1];
+  s[1] = s[2] = 0.;
+}
+static inline void BendingDisplacement(PetscReal E, PetscReal nu, const PetscReal x[2], PetscReal u[2])
+{
+  u[0] = (1. - nu * nu) / E * x[0] * x[1];
+  u[1] = -0.5 * (1. - nu * nu) / E * x[0] * x[0] - 0.5 * nu * (1. + nu) / E * x[1] * x[1];
+}
+
+/* Contours of equally many elements, everything else zero */
+static inline PetscErrorCode BoundaryAllocate(PetscInt n, PetscInt ncontours, AbutBoundary *b)
+{
+  PetscFunctionBegin;
+  b->n         = n;
+  b->ncontours = ncontours;
+  PetscCall(PetscCalloc5(ncontours + 1, &b->contour, n, &b->end, 2 * n, &b->x, 2 * n, &b->u, n, &b->side));
+  PetscCall(PetscCalloc4(2 * n, &b->condition, 4 * n, &b->traction, 2 * n, &b->reaction, 2 * n, &b->contact));
+  for (PetscInt i = 0; i < n; ++i) b->end[i] = i + 1;
+  for (PetscInt c = 0; c < ncontours; ++c) {
+    b->contour[c + 1]             = (c + 1) * n / ncontours;
+    b->end[b->contour[c + 1] - 1] = b->contour[c];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static inline PetscErrorCode BoundaryFree(AbutBoundary *b)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree5(b->contour, b->end, b->x, b->u, b->side));
+  PetscCall(PetscFree4(b->condition, b->traction, b->reaction, b->contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One rectangle, m[0..3] elements below, right, above, left, those of a side growing up to 20 times; clockwise for a hole */
+static inline void RectangleNodes(const PetscReal lo[2], const PetscReal hi[2], const PetscInt m[4], PetscBool hole, PetscInt first,
+                                  AbutBoundary *b)
+{
+  const PetscReal corner[4][2] = {
+    {lo[0], lo[1]},
+    {hi[0], lo[1]},
+    {hi[0], hi[1]},
+    {lo[0], hi[1]}
+  };
+  PetscInt i = first;
+
+  for (PetscInt k = 0; k < 4; ++k) {
+    const PetscInt side = hole ? 3 - k : k, from = hole ? (4 - k) % 4 : k, to = hole ? 3 - k : (k + 1) % 4;
+
+    for (PetscInt j = 0; j < m[side]; ++j, ++i) {
+      const PetscReal s = (PetscPowReal(20., (PetscReal)j / m[side]) - 1.) / 19.;
+
+      for (PetscInt d = 0; d < 2; ++d) b->x[2 * i + d] = (1. - s) * corner[from][d] + s * corner[to][d];
+      b->side[i] = side + (hole ? 4 : 0);
+    }
+  }
+}
+
+/* A box of m elements a side, with a hole in its middle third if wanted */
+static inline PetscErrorCode BoundaryCreateBox(const PetscReal lo[2], const PetscReal hi[2], const PetscInt m[4], PetscBool hole,
+                                               AbutBoundary *b)
+{
+  const PetscInt  n      = m[0] + m[1] + m[2] + m[3];
+  const PetscReal ilo[2] = {(2. * lo[0] + hi[0]) / 3., (2. * lo[1] + hi[1]) / 3.},
+                  ihi[2] = {(lo[0] + 2. * hi[0]) / 3., (lo[1] + 2. * hi[1]) / 3.};
+
+  PetscFunctionBegin;
+  PetscCall(BoundaryAllocate(hole ? 2 * n : n, hole ? 2 : 1, b));
+  RectangleNodes(lo, hi, m, PETSC_FALSE, 0, b);
+  if (hole) RectangleNodes(ilo, ihi, m, PETSC_TRUE, n, b);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The data of a field under condition[2*side + component]; reactions and contact forces hold its tractions, integrated exactly if linear */
+static inline void BoundaryFill(const Field *f, const AbutConditionType condition[], AbutBoundary *b)
+{
+  for (PetscInt i = 0; i < b->n; ++i) {
+    const PetscInt   node[2] = {i, b->end[i]};
+    const PetscReal *x[2] = {&b->x[2 * node[0]], &b->x[2 * node[1]]}, dx[2] = {x[1][0] - x[0][0], x[1][1] - x[0][1]};
+    PetscReal        t[2][2], s[3]; /* tractions at the ends, times the length */
+
+    f->displacement(f->young, f->poisson, x[0], &b->u[2 * i]);
+    for (PetscInt k = 0; k < 2; ++k) {
+      f->stress(x[k], s);
+      t[k][0] = s[0] * dx[1] - s[2] * dx[0];
+      t[k][1] = s[2] * dx[1] - s[1] * dx[0];
+    }
+    for (PetscInt d = 0; d < 2; ++d) {
+      const AbutConditionType type = b->condition[2 * i + d] = condition[2 * b->side[i] + d];
+
+      for (PetscInt k = 0; k < 2; ++k) {
+        const PetscReal force = t[k][d] / 3. + t[1 - k][d] / 6.;
+
+        if (type == ABUT_TRACTION) b->traction[4 * i + 2 * k + d] = t[k][d] / PetscSqrtReal(dx[0] * dx[0] + dx[1] * dx[1]);
+        if (type == ABUT_DISPLACEMENT) b->reaction[2 * node[k] + d] += force;
+        if (type == ABUT_CONTACT) b->contact[2 * node[k] + d] += force;
+      }
+    }
+  }
+}
+
+/* Two letters a side: below, right, above, left, then a hole; t, u, c: traction, displacement, contact given for a component */
+static inline void BoundaryConditions(const char text[16], AbutConditionType condition[16])
+{
+  for (PetscInt i = 0; i < 16; ++i) condition[i] = text[i] == 'u' ? ABUT_DISPLACEMENT : (text[i] == 'c' ? ABUT_CONTACT : ABUT_TRACTION);
+}
