@@ -91,7 +91,7 @@ def main():
     parser.add_argument("--quick", action="store_true", help="unit tests on one rank, and bad input")
     parser.add_argument("--list", action="store_true", help="only print the names")
     parser.add_argument("-j", type=int, default=1, help="tests at a time [1]; times are then worth little")
-    parser.add_argument("--limit", type=float, default=600, help="seconds for one test [600]")
+    parser.add_argument("--limit", type=float, default=300, help="seconds for one test [300]")
     args = parser.parse_args()
 
     os.environ.update({key: os.environ.get(key, value) for key, value in MPI.items()}, ABUT_BUILD=os.path.abspath(args.build))

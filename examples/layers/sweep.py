@@ -17,7 +17,7 @@ from layers import HERE, penalty, record, reference
 def solve(args, delta, further):
     path = os.path.join(args.out, f"layers_{delta:g}.record")
     scene = os.path.join(HERE, "layers.yml")
-    command = [args.abut, "-options_file", scene, "-adaptor_threshold", f"{delta:g}", "-record", path] + further
+    command = [args.abut, "-options_file", scene, "-adaptor_threshold", f"{delta:g}", "-adaptor_max_level", "12", "-record", path] + further
     status = subprocess.run(command, stdout=subprocess.DEVNULL).returncode
     if status not in (0, 3):  # 3: a limit was reached, which the verdict names
         raise SystemExit(f"{' '.join(command)}\nended with exit status {status}")

@@ -7,8 +7,8 @@
      [ V    W ] [t]   [f]      V = <t, V t> > 0, W = <t, (1/2 - K) u>,
      [ W^T -D ] [u] = [g]      D = <u, D u> >= 0,
    solved by two Cholesky factorisations: V, then D + W^T V^-1 W. Lengths are scaled by twice the size of the body, which keeps V positive
-   (logarithmic capacity below 1), stresses by Young's modulus. Rigid motions that no given displacement prevents are taken from the finite
-   elements; they carry no stress. Limits: dense, so n = 4000 elements take about 512 MB and some 10^11 operations.
+   (logarithmic capacity below 1), stresses by Young's modulus. Rigid motions that no given displacement prevents are set to zero; they
+   carry no stress. Limits: dense, so n = 4000 elements take about 512 MB and some 10^11 operations.
 */
 typedef struct {
   const FembemBoundary *b;
@@ -211,7 +211,7 @@ static PetscErrorCode FindFreeMotions(const System *s, PetscInt first, PetscInt 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* D + W^T V^-1 W does not feel these motions: give each the stiffness of an average unknown, towards the finite elements' displacement */
+/* D + W^T V^-1 W does not feel these motions: give each the stiffness of an average unknown, so that it becomes zero */
 static PetscErrorCode HoldFreeMotions(System *s)
 {
   const AbutBoundary *g = s->b->given;
@@ -229,7 +229,7 @@ static PetscErrorCode HoldFreeMotions(System *s)
     /* the rigid motion of a hole alone is felt nowhere; that of the outer contour moves the holes */
     PetscCall(FindFreeMotions(s, area < 0. ? first : 0, area < 0. ? end : s->b->n, v, &nfree));
     for (PetscInt m = 0; m < nfree; ++m) {
-      PetscReal norm2 = 0., along = 0.;
+      PetscReal norm2 = 0.;
 
       PetscCall(PetscArrayzero(r, s->nu));
       for (PetscInt i = 2 * first; i < 2 * end; ++i) {
@@ -238,10 +238,8 @@ static PetscErrorCode HoldFreeMotions(System *s)
         if (k < 0) continue;
         for (PetscInt j = 0; j < 3; ++j) r[k] += v[3 * m + j] * RigidMotion(s, i / 2, i % 2, j);
         norm2 += r[k] * r[k];
-        along += r[k] * s->u[i];
       }
       for (PetscInt i = 0; i < s->nu; ++i) {
-        s->g[i] += stiffness / norm2 * along * r[i];
         for (PetscInt j = 0; r[i] != 0. && j < s->nu; ++j) s->D[j + (size_t)s->nu * i] += stiffness / norm2 * r[i] * r[j];
       }
     }

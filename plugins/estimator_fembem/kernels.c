@@ -12,22 +12,6 @@ void FembemElementSet(FembemElement *e, PetscComplex a, PetscComplex b)
   e->em = PetscConjComplex(b - a) / e->h;
 }
 
-static inline PetscReal AbsSquare(PetscComplex z)
-{
-  return PetscRealPartComplex(z) * PetscRealPartComplex(z) + PetscImaginaryPartComplex(z) * PetscImaginaryPartComplex(z);
-}
-
-/* Twice the signed area of two vectors: Im(conj(a) b) */
-static inline PetscReal Cross(PetscComplex a, PetscComplex b)
-{
-  return PetscRealPartComplex(a) * PetscImaginaryPartComplex(b) - PetscImaginaryPartComplex(a) * PetscRealPartComplex(b);
-}
-
-static inline PetscReal Dot(PetscComplex a, PetscComplex b)
-{
-  return PetscRealPartComplex(a) * PetscRealPartComplex(b) + PetscImaginaryPartComplex(a) * PetscImaginaryPartComplex(b);
-}
-
 /* L = Int dt/w = r (1 + g), Int N_b dt/w = L/2 - g; series in r = (b - a)/m, m from z to the middle, |r| < 1/8: truncated below 1e-13 */
 static inline PetscComplex FarSum(PetscComplex r2)
 {
@@ -41,7 +25,7 @@ static void IntegrateFar(const FembemElement *e, PetscComplex m, PetscReal m2, F
                      ei2 = PetscConjComplex(e->em * e->em);
   const PetscReal    s0  = PetscRealPartComplex(r2 * (1. / 24. + r2 * (1. / 320. + r2 * (1. / 2688. + r2 * (1. / 18432.)))));
   const PetscReal    s1  = PetscRealPartComplex(r * (1. / 12. + r2 * (1. / 240. + r2 * (1. / 2240. + r2 * (1. / 16128.)))));
-  const PetscComplex id2 = PetscCMPLX(0., 2. * Cross(m, e->t) / e->h);
+  const PetscComplex id2 = PetscCMPLX(0., 2. * FembemCross(m, e->t) / e->h);
 
   v->Eb = 0.5 * L - g;
   v->Ea = L - v->Eb;
@@ -55,15 +39,15 @@ static void IntegrateFar(const FembemElement *e, PetscComplex m, PetscReal m2, F
 void FembemElementIntegrate(const FembemElement *e, PetscComplex z, PetscBool own, FembemIntegrals *v)
 {
   const PetscComplex wa = e->a - z, wb = e->b - z, m = 0.5 * (wa + wb);
-  const PetscReal    m2 = AbsSquare(m), h = e->h;
+  const PetscReal    m2 = FembemAbsSquare(m), h = e->h;
 
   if (m2 > FEMBEM_FAR * FEMBEM_FAR * h * h) {
     IntegrateFar(e, m, m2, v);
   } else {
-    const PetscReal    ra = AbsSquare(wa), rb = AbsSquare(wb), la = 0.5 * PetscLogReal(ra), lb = 0.5 * PetscLogReal(rb);
-    const PetscReal    cross = own ? 0. : Cross(ra <= rb ? wa : wb, e->t); /* from the nearer end: the other one costs digits */
+    const PetscReal    ra = FembemAbsSquare(wa), rb = FembemAbsSquare(wb), la = 0.5 * PetscLogReal(ra), lb = 0.5 * PetscLogReal(rb);
+    const PetscReal    cross = own ? 0. : FembemCross(ra <= rb ? wa : wb, e->t); /* from the nearer end: the other one costs digits */
     const PetscReal    sa = PetscRealPartComplex(e->em * wa), sb = PetscRealPartComplex(e->em * wb), d = cross / h;
-    const PetscReal    arg = own ? PETSC_PI : atan2(cross, Dot(wa, wb));
+    const PetscReal    arg = own ? PETSC_PI : atan2(cross, FembemDot(wa, wb));
     const PetscComplex L = PetscCMPLX(lb - la, arg), ei2 = PetscConjComplex(e->em * e->em), id2 = PetscCMPLX(0., 2. * d);
 
     v->Eb = PetscCMPLX(-sa, d) / h * L + 1.;
@@ -99,7 +83,7 @@ void FembemSourceAdd(const FembemSource *s, PetscComplex z, PetscComplex *phi, P
 {
   const FembemElement *e  = &s->e;
   const PetscComplex   wa = e->a - z, wb = e->b - z, m = 0.5 * (wa + wb);
-  const PetscReal      m2 = AbsSquare(m), h = e->h;
+  const PetscReal      m2 = FembemAbsSquare(m), h = e->h;
   PetscComplex         I1, I2, J1;
   PetscReal            d;
 
@@ -107,15 +91,15 @@ void FembemSourceAdd(const FembemSource *s, PetscComplex z, PetscComplex *phi, P
     const PetscComplex inv = PetscConjComplex(m) / m2, r = e->t * inv, r2 = r * r, g = FarSum(r2), L = r + r * g, c = 0.25 * r2,
                        p = s->pa + 0.5 * s->dp;
 
-    d  = Cross(m, e->t) / h;
+    d  = FembemCross(m, e->t) / h;
     I1 = p * L - s->dp * g;
     J1 = (s->qa + 0.5 * s->dq) * L - s->dq * g;
     I2 = inv * r *
          (p * (1. + c * (1. + c * (1. + c * (1. + c * (1. + c))))) -
           s->dp * r * (1. / 6. + r2 * (0.05 + r2 * (3. / 224. + r2 * (1. / 288. + r2 * (10. / 11264.))))));
   } else {
-    const PetscReal    ra = AbsSquare(wa), rb = AbsSquare(wb), x = 2. * Dot(e->t, m) / ra, cross = Cross(ra <= rb ? wa : wb, e->t);
-    const PetscComplex L  = PetscCMPLX(0.5 * (PetscAbsReal(x) < 0.5 ? log1p(x) : PetscLogReal(rb / ra)), atan2(cross, Dot(wa, wb)));
+    const PetscReal    ra = FembemAbsSquare(wa), rb = FembemAbsSquare(wb), cross = FembemCross(ra <= rb ? wa : wb, e->t); /* as above */
+    const PetscComplex L  = PetscCMPLX(0.5 * PetscLogReal(rb / ra), atan2(cross, FembemDot(wa, wb)));
     const PetscComplex p0 = s->pa - s->p1 * wa, q0 = s->qa - s->q1 * wa; /* the densities continued to z */
 
     d  = cross / h;

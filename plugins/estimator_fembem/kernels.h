@@ -34,6 +34,22 @@ typedef struct {
   PetscReal mu, kappa; /* shear modulus, 3 - 4 nu */
 } FembemMaterial;
 
+static inline PetscReal FembemAbsSquare(PetscComplex z)
+{
+  return PetscRealPartComplex(z) * PetscRealPartComplex(z) + PetscImaginaryPartComplex(z) * PetscImaginaryPartComplex(z);
+}
+
+/* Twice the signed area of two vectors: Im(conj(a) b) */
+static inline PetscReal FembemCross(PetscComplex a, PetscComplex b)
+{
+  return PetscRealPartComplex(a) * PetscImaginaryPartComplex(b) - PetscImaginaryPartComplex(a) * PetscRealPartComplex(b);
+}
+
+static inline PetscReal FembemDot(PetscComplex a, PetscComplex b)
+{
+  return PetscRealPartComplex(a) * PetscRealPartComplex(b) + PetscImaginaryPartComplex(a) * PetscImaginaryPartComplex(b);
+}
+
 PETSC_INTERN void FembemElementSet(FembemElement *, PetscComplex, PetscComplex);
 PETSC_INTERN void FembemElementIntegrate(const FembemElement *, PetscComplex, PetscBool, FembemIntegrals *);
 PETSC_INTERN void FembemSourceSet(FembemSource *, PetscComplex, PetscComplex, PetscComplex, PetscComplex, PetscComplex, PetscComplex,

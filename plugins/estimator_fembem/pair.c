@@ -30,11 +30,6 @@ static const OuterRule rules[] = {
 };
 /* clang-format on */
 
-static inline PetscReal Dot(PetscComplex a, PetscComplex b)
-{
-  return PetscRealPartComplex(a) * PetscRealPartComplex(b) + PetscImaginaryPartComplex(a) * PetscImaginaryPartComplex(b);
-}
-
 /* The map c -> alpha c + beta conj(c) as a real 2x2 matrix, added to a block of 4x4 at the given ends */
 static void AddMap(PetscReal block[], PetscInt row, PetscInt col, PetscComplex alpha, PetscComplex beta)
 {
@@ -87,7 +82,7 @@ static void AddPart(const FembemElement *outer, const FembemElement *inner, Pets
 {
   const PetscReal    size = (s[1] - s[0]) * outer->h, middle = 0.5 * (s[0] + s[1]);
   const PetscComplex w        = outer->a - inner->a + middle * outer->t;
-  const PetscReal    foot     = PetscMax(0., PetscMin(1., Dot(w, inner->t) / (inner->h * inner->h)));
+  const PetscReal    foot     = PetscMax(0., PetscMin(1., FembemDot(w, inner->t) / (inner->h * inner->h)));
   const PetscReal    distance = PetscAbsComplex(w - foot * inner->t) / size - 0.5; /* a lower bound */
   const OuterRule   *rule     = rules;
   FembemIntegrals    v;

@@ -27,11 +27,6 @@ struct _n_FembemTree {
   PetscReal          *point, *weight; /* Gauss on [0,1], exact for the moments */
 };
 
-static inline PetscReal AbsSquare(PetscComplex z)
-{
-  return PetscRealPartComplex(z) * PetscRealPartComplex(z) + PetscImaginaryPartComplex(z) * PetscImaginaryPartComplex(z);
-}
-
 static void ClusterBound(FembemTree tree, Cluster *cl)
 {
   PetscReal lo[2] = {PETSC_MAX_REAL, PETSC_MAX_REAL}, hi[2] = {PETSC_MIN_REAL, PETSC_MIN_REAL};
@@ -50,7 +45,7 @@ static void ClusterBound(FembemTree tree, Cluster *cl)
   cl->c  = PetscCMPLX(0.5 * (lo[0] + hi[0]), 0.5 * (lo[1] + hi[1]));
   cl->R2 = 0.;
   for (PetscInt i = cl->first; i < cl->end; ++i)
-    cl->R2 = PetscMax(cl->R2, PetscMax(AbsSquare(tree->source[i].e.a - cl->c), AbsSquare(tree->source[i].e.b - cl->c)));
+    cl->R2 = PetscMax(cl->R2, PetscMax(FembemAbsSquare(tree->source[i].e.a - cl->c), FembemAbsSquare(tree->source[i].e.b - cl->c)));
 }
 
 static void ClusterMoments(FembemTree tree, const Cluster *cl, PetscComplex m[])
@@ -121,7 +116,7 @@ PetscErrorCode FembemTreeCreate(PetscInt n, const FembemSource source[], PetscRe
 /* Horner's scheme, from the highest term */
 static void ClusterAdd(FembemTree tree, PetscInt id, PetscComplex w, PetscComplex *phi, PetscComplex *S)
 {
-  const PetscComplex *m = &tree->moment[4 * tree->terms * id], v = PetscConjComplex(w) / AbsSquare(w);
+  const PetscComplex *m = &tree->moment[4 * tree->terms * id], v = PetscConjComplex(w) / FembemAbsSquare(w);
   PetscComplex        p = 0., q = 0., dp = 0., dn = 0.;
 
   for (PetscInt k = tree->terms - 1; k >= 0; --k) {
@@ -139,7 +134,7 @@ static void TreeAdd(FembemTree tree, PetscInt id, PetscComplex z, PetscComplex *
   const Cluster     *cl = &tree->cluster[id];
   const PetscComplex w  = z - cl->c;
 
-  if (cl->R2 < FEMBEM_THETA * FEMBEM_THETA * AbsSquare(w)) {
+  if (cl->R2 < FEMBEM_THETA * FEMBEM_THETA * FembemAbsSquare(w)) {
     ClusterAdd(tree, id, w, phi, S);
   } else if (cl->left < 0) {
     for (PetscInt i = cl->first; i < cl->end; ++i) FembemSourceAdd(&tree->source[i], z, phi, S);

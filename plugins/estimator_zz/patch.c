@@ -11,8 +11,7 @@ void AbutPatchAdd_Private(const PetscReal d[2], const PetscReal s[3], PetscReal 
 }
 
 /* Fits 1, x, y and, if terms is 4, xy. A term that the samples do not tell apart from those before it is left out, so that any samples give
-   an answer; plane says whether 1, x and y were all told apart. Lengths are scaled by the size of the patch: the test must not depend on
-   the unit. */
+   an answer; plane says whether 1, x and y were all told apart. The test is relative to the term itself, whatever the unit of length. */
 void AbutPatchFit_Private(PetscInt terms, const PetscReal m[], PetscReal coef[], PetscBool *plane)
 {
   static const PetscInt moment[4][4] = {
@@ -21,17 +20,17 @@ void AbutPatchFit_Private(PetscInt terms, const PetscReal m[], PetscReal coef[],
     {2, 3, 5, 7},
     {3, 6, 7, 8}
   };
-  const PetscReal h = PetscSqrtReal((m[4] + m[5]) / m[0]), scale[4] = {1., 1. / h, 1. / h, 1. / (h * h)}, apart = 1e-3;
+  const PetscReal apart = 1e-3;
   PetscReal       L[4][4];
   PetscBool       out[4];
 
   for (PetscInt i = 0; i < terms; ++i) { /* Cholesky */
     for (PetscInt j = 0; j <= i; ++j) {
-      L[i][j] = m[moment[i][j]] * scale[i] * scale[j];
+      L[i][j] = m[moment[i][j]];
       for (PetscInt k = 0; k < j; ++k) L[i][j] -= L[i][k] * L[j][k];
       if (j < i) L[i][j] = out[j] ? 0. : L[i][j] / L[j][j];
     }
-    out[i]  = L[i][i] > apart * m[moment[i][i]] * scale[i] * scale[i] ? PETSC_FALSE : PETSC_TRUE;
+    out[i]  = L[i][i] > apart * m[moment[i][i]] ? PETSC_FALSE : PETSC_TRUE;
     L[i][i] = out[i] ? 1. : PetscSqrtReal(L[i][i]);
   }
   *plane = out[0] || out[1] || out[2] ? PETSC_FALSE : PETSC_TRUE;
@@ -41,7 +40,7 @@ void AbutPatchFit_Private(PetscInt terms, const PetscReal m[], PetscReal coef[],
     for (PetscInt i = 0; i < 4; ++i) a[i] = 0.;
     for (PetscInt i = 0; i < terms; ++i) {
       if (out[i]) continue;
-      a[i] = m[9 + 4 * s + i] * scale[i];
+      a[i] = m[9 + 4 * s + i];
       for (PetscInt k = 0; k < i; ++k) a[i] -= L[i][k] * a[k];
       a[i] /= L[i][i];
     }
@@ -49,7 +48,6 @@ void AbutPatchFit_Private(PetscInt terms, const PetscReal m[], PetscReal coef[],
       for (PetscInt k = i + 1; k < terms; ++k) a[i] -= out[k] ? 0. : L[k][i] * a[k];
       a[i] = out[i] ? 0. : a[i] / L[i][i];
     }
-    for (PetscInt i = 0; i < terms; ++i) a[i] *= scale[i];
   }
 }
 

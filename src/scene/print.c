@@ -65,19 +65,21 @@ static PetscErrorCode AbutScenePrintCost_Private(AbutScene scene)
 {
   MPI_Comm        comm  = PetscObjectComm((PetscObject)scene);
   const PetscReal total = scene->mark - scene->begun;
+  PetscReal       assembly  = 0.;
+  PetscInt        assembled = 0;
 
   PetscFunctionBegin;
   PetscCall(PetscPrintf(comm, "seconds: %.2f = set-up %.2f + sweeps %.2f + estimate %.2f (%.0f %%) + adapt %.2f + output %.2f\n", (double)total, scene->seconds[ABUT_TIME_SETUP], scene->seconds[ABUT_TIME_SOLVE],
                         scene->seconds[ABUT_TIME_ESTIMATE], total > 0. ? 100. * scene->seconds[ABUT_TIME_ESTIMATE] / total : 0., scene->seconds[ABUT_TIME_ADAPT], scene->seconds[ABUT_TIME_OUTPUT]));
   for (PetscInt b = 0; b < scene->nbodies; ++b) {
-    const char *name;
-    PetscReal   seconds;
-    PetscInt    cells;
+    PetscReal seconds;
+    PetscInt  cells;
 
-    PetscCall(AbutBodyGetName(scene->body[b], &name));
     PetscCall(AbutBodyGetAssemblyCost(scene->body[b], &seconds, &cells));
-    if (cells) PetscCall(PetscPrintf(comm, "body %s: %.2f microseconds a cell for element matrices and their insertion\n", name, (double)(1e6 * seconds / cells)));
+    assembly += seconds;
+    assembled += cells;
   }
+  PetscCall(PetscPrintf(comm, "element matrices and their insertion: %.2f microseconds a cell (%" PetscInt_FMT " cells)\n", assembled ? (double)(1e6 * assembly / assembled) : 0., assembled));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

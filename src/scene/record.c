@@ -30,7 +30,7 @@ static PetscErrorCode AbutSceneRecordBodies_Private(AbutScene scene, PetscReal *
 {
   AbutRecorder rec      = scene->recorder;
   PetscInt     unknowns = 0;
-  PetscReal    strain = 0., linear = 0., balance = 0., identity = 0., alluniform = 0.;
+  PetscReal    strain = 0., done = 0., linear = 0., balance = 0., identity = 0.;
 
   PetscFunctionBegin;
   for (PetscInt b = 0; b < scene->nbodies; ++b) {
@@ -62,7 +62,7 @@ static PetscErrorCode AbutSceneRecordBodies_Private(AbutScene scene, PetscReal *
     PetscCall(AbutSceneSetReal_Private(scene, "body", name, "lemma", m.lemma));
     PetscCall(AbutSceneSetReal_Private(scene, "body", name, "unknowns_uniform", uniform));
     unknowns += n;
-    alluniform += uniform;
+    done += work;
     strain += energy;
     linear = PetscMax(linear, residual);
     for (PetscInt d = 0; d < 2; ++d) {
@@ -74,6 +74,7 @@ static PetscErrorCode AbutSceneRecordBodies_Private(AbutScene scene, PetscReal *
   }
   PetscCall(AbutRecorderSetInt(rec, "unknowns", unknowns));
   PetscCall(AbutRecorderSetReal(rec, "energy.strain", strain));
+  PetscCall(AbutRecorderSetReal(rec, "energy.work", done));
   *energy_strain = strain;
   PetscCall(AbutRecorderSetReal(rec, "error.linear", linear));
   PetscCall(AbutRecorderSetReal(rec, "check.balance", balance));

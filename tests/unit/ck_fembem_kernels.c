@@ -119,6 +119,29 @@ START_TEST(element_integrals_match_their_quadrature)
 }
 END_TEST
 
+/* A point near the start of an element, and all of it turned to 3 + 4i, coordinates exact: its distance must be taken from that end */
+START_TEST(an_inclined_element_keeps_the_digits_near_its_ends)
+{
+  const PetscReal      along = ldexp(1., -44), off = ldexp(1., -56);
+  const FembemMaterial mat    = {.mu = 0.4, .kappa = 1.8};
+  const PetscComplex   z[2]   = {PetscCMPLX(5. * along, 5. * off), PetscCMPLX(3. * along - 4. * off, 4. * along + 3. * off)};
+  PetscComplex         phi[2] = {0., 0.}, S[2] = {0., 0.};
+  FembemIntegrals      v[2];
+
+  for (PetscInt k = 0; k < 2; ++k) {
+    const PetscComplex b = k ? PetscCMPLX(3., 4.) : 5.;
+    FembemSource       s;
+
+    FembemSourceSet(&s, 0., b, 0., 0., b, 0.5 * b, mat);
+    FembemSourceAdd(&s, z[k], &phi[k], &S[k]);
+    FembemElementIntegrate(&s.e, z[k], PETSC_FALSE, &v[k]);
+  }
+  ck_assert_double_eq_tol(PetscAbsComplex(v[0].Ea + v[0].Eb - v[1].Ea - v[1].Eb), 0., 1e-13);
+  ck_assert_double_eq_tol(PetscAbsComplex(v[0].Eb - v[1].Eb), 0., 1e-13);
+  ck_assert_double_eq_tol(PetscAbsComplex(phi[0] - phi[1]), 0., 1e-12);
+}
+END_TEST
+
 /* The far expansion takes over at 8 lengths: both sides of that distance agree, for the same element seen from two points an ulp apart */
 START_TEST(near_and_far_formulas_meet)
 {
@@ -252,6 +275,7 @@ int main(int argc, char **argv)
   tcase_add_test(tests, stresses_are_those_of_kelvins_kernels_at_any_distance);
   tcase_add_test(tests, displacements_are_those_of_kelvins_kernels_at_any_distance);
   tcase_add_test(tests, element_integrals_match_their_quadrature);
+  tcase_add_test(tests, an_inclined_element_keeps_the_digits_near_its_ends);
   tcase_add_test(tests, near_and_far_formulas_meet);
   tcase_add_test(tests, a_rigid_motion_has_no_stress);
   tcase_add_test(tests, a_uniform_stress_is_exact_inside_and_zero_outside);

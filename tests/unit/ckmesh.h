@@ -5,6 +5,22 @@
 
 /* Meshes for the tests of everything that lives on one */
 
+static PetscOptions ck_options;
+
+/* Between the two calls these options hold, and no other */
+static inline void CkOptions(const char text[])
+{
+  CkOk(PetscOptionsCreate(&ck_options));
+  CkOk(PetscOptionsInsertString(ck_options, text));
+  CkOk(PetscOptionsPush(ck_options));
+}
+
+static inline void CkOptionsEnd(void)
+{
+  CkOk(PetscOptionsPop());
+  CkOk(PetscOptionsDestroy(&ck_options));
+}
+
 static inline AbutMesh CkBoxOn(MPI_Comm comm, PetscReal x0, PetscReal y0, PetscReal x1, PetscReal y1, PetscInt nx, PetscInt ny, AbutShape shape)
 {
   const PetscReal lower[2] = {x0, y0}, upper[2] = {x1, y1};

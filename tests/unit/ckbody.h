@@ -1,0 +1,198 @@
+#pragma once
+
+#include "ckmesh.h"
+#include <abutbody.h>
+#include <petscdt.h>
+#include <complex.h>
+
+/* Bodies whose displacement is known, and how far from it they are. Fields satisfy the equations of plane strain without body force. */
+
+typedef struct CkField CkField;
+typedef struct {
+  const CkField *field;
+  PetscInt       side, component;
+} CkData;
+struct CkField {
+  void (*at)(const CkField *, const PetscReal x[2], PetscReal u[2], PetscReal s[3]); /* displacement, and s11, s22, s12 */
+  PetscReal young, poisson;
+  CkData    data[4][2]; /* what the conditions on the sides refer to */
+};
+
+#define CK_YOUNG   2.1e5
+#define CK_POISSON 0.3
+
+/* u = (1 + 2x - y, 3 - x/2 + 4y)/1000: every strain is there, and a rotation */
+static inline void CkLinear(const CkField *field, const PetscReal x[2], PetscReal u[2], PetscReal s[3])
+{
+  const PetscReal E = field->young, nu = field->poisson, mu = E / (2. * (1. + nu)), lambda = E * nu / ((1. + nu) * (1. - 2. * nu));
+
+  u[0] = 1e-3 * (1. + 2. * x[0] - x[1]);
+  u[1] = 1e-3 * (3. - 0.5 * x[0] + 4. * x[1]);
+  s[0] = 1e-3 * (lambda * 6. + 2. * mu * 2.);
+  s[1] = 1e-3 * (lambda * 6. + 2. * mu * 4.);
+  s[2] = 1e-3 * mu * -1.5;
+}
+
+/* Kolosov and Muskhelishvili's potentials: 2 mu (u1 + i u2) = (3 - 4 nu) phi - z conj(phi') - conj(psi) */
+static inline void CkSmooth(const CkField *field, const PetscReal x[2], PetscReal u[2], PetscReal s[3])
+{
+  const double complex z = x[0] + I * x[1], phi = 2. * cexp(0.5 * z), dphi = 0.5 * phi, ddphi = 0.25 * phi, psi = csin(z), dpsi = ccos(z);
+  const double complex w = ((3. - 4. * field->poisson) * phi - z * conj(dphi) - conj(psi)) * (1. + field->poisson) / field->young, t = 2. * (conj(z) * ddphi + dpsi);
+
+  u[0] = creal(w);
+  u[1] = cimag(w);
+  s[0] = 2. * creal(dphi) - 0.5 * creal(t);
+  s[1] = 2. * creal(dphi) + 0.5 * creal(t);
+  s[2] = 0.5 * cimag(t);
+}
+
+/* Hertz' pressure sqrt(a^2 - x^2) p0/a on the half-plane y <= 0 by Westergaard's function; a = 1/2, p0 = 1000, x >= 0 */
+static inline void CkHertz(const CkField *field, const PetscReal x[2], PetscReal u[2], PetscReal s[3])
+{
+  const PetscReal      a = 0.5, p0 = 1000., y = x[1], nu = field->poisson, mu = field->young / (2. * (1. + nu));
+  const double complex z = x[0] + I * PetscMin(y, -1e-290), root = csqrt(a * a - z * z); /* the side y = 0 is seen from below */
+  const double complex Z = -p0 / a * (root - I * z), dZ = p0 / a * (z / root + I), Zi = -p0 / a * (0.5 * z * root + 0.5 * a * a * casin(z / a) - 0.5 * I * z * z);
+
+  u[0] = ((1. - 2. * nu) * creal(Zi) - y * cimag(Z)) / (2. * mu);
+  u[1] = (2. * (1. - nu) * cimag(Zi) - y * creal(Z)) / (2. * mu);
+  s[0] = creal(Z) - (y < 0. ? y * cimag(dZ) : 0.);
+  s[1] = creal(Z) + (y < 0. ? y * cimag(dZ) : 0.);
+  s[2] = y < 0. ? -y * creal(dZ) : 0.;
+}
+
+static inline PetscErrorCode CkDisplacement(const PetscReal x[2], PetscReal *value, void *ctx)
+{
+  const CkData *data = (const CkData *)ctx;
+  PetscReal     u[2], s[3];
+
+  data->field->at(data->field, x, u, s);
+  *value = u[data->component];
+  return PETSC_SUCCESS;
+}
+
+static inline PetscErrorCode CkTraction(const PetscReal x[2], PetscReal *value, void *ctx)
+{
+  const CkData   *data = (const CkData *)ctx;
+  const PetscInt  d    = data->side / 2; /* sides left, right, bottom, top: the normal is -e1, e1, -e2, e2 */
+  PetscReal       u[2], s[3];
+
+  data->field->at(data->field, x, u, s);
+  *value = (data->side % 2 ? 1. : -1.) * (d == data->component ? s[d] : s[2]);
+  return PETSC_SUCCESS;
+}
+
+/* A body of a field, without conditions yet */
+static inline AbutBody CkBodyOn(MPI_Comm comm, const char name[], CkField *field, PetscReal x0, PetscReal y0, PetscReal x1, PetscReal y1, PetscInt nx, PetscInt ny, AbutShape shape)
+{
+  const PetscReal lower[2] = {x0, y0}, upper[2] = {x1, y1};
+  const PetscInt  cells[2] = {nx, ny};
+  AbutMesh        mesh;
+  AbutBody        body;
+
+  if (field->young == 0.) {
+    field->young   = CK_YOUNG;
+    field->poisson = CK_POISSON;
+  }
+  CkOk(AbutBodyCreate(comm, name, &body));
+  CkOk(AbutBodyGetMesh(body, &mesh));
+  CkOk(AbutMeshSetBox(mesh, lower, upper, cells, shape));
+  CkOk(AbutMeshSetUp(mesh));
+  CkOk(AbutBodySetMaterial(body, field->young, field->poisson));
+  return body;
+}
+
+/* The field's displacements (u) or tractions (t) on a side, a letter per component, - for none: CkGive(body, &field, "left", "ut") */
+static inline void CkGive(AbutBody body, CkField *field, const char side[], const char what[2])
+{
+  AbutMesh mesh;
+  PetscInt s;
+
+  CkOk(AbutBodyGetMesh(body, &mesh));
+  CkOk(AbutMeshFindSide(mesh, "side", side, &s));
+  for (PetscInt d = 0; d < 2; ++d) {
+    CkData *data    = &field->data[s][d];
+    data->field     = field;
+    data->side      = s;
+    data->component = d;
+    if (what[d] == 'u') CkOk(AbutBodySetDisplacement(body, side, d, CkDisplacement, data));
+    if (what[d] == 't') CkOk(AbutBodySetTraction(body, side, d, CkTraction, data));
+  }
+}
+
+static inline void CkGiveAll(AbutBody body, CkField *field, const char left[2], const char right[2], const char bottom[2], const char top[2])
+{
+  CkGive(body, field, "left", left);
+  CkGive(body, field, "right", right);
+  CkGive(body, field, "bottom", bottom);
+  CkGive(body, field, "top", top);
+}
+
+static inline AbutMesh CkMeshOf(AbutBody body)
+{
+  AbutMesh mesh;
+
+  CkOk(AbutBodyGetMesh(body, &mesh));
+  return mesh;
+}
+
+/* Largest distance from the field at vertices, over the largest displacement */
+static inline PetscReal CkNodalError(AbutBody body, const CkField *field)
+{
+  const AbutMeshTopology *t      = CkTopology(CkMeshOf(body));
+  PetscReal               most[2] = {0., 0.}, u[2], s[3];
+  const PetscReal        *uh;
+
+  CkOk(AbutBodyGetVertexDisplacement(body, &uh));
+  for (PetscInt i = 0; i < t->corners * t->ncells; ++i) {
+    const PetscInt v = t->cell[i];
+
+    field->at(field, t->x + 2 * v, u, s);
+    for (PetscInt d = 0; d < 2; ++d) {
+      most[0] = PetscMax(most[0], PetscAbsReal(uh[2 * v + d] - u[d]));
+      most[1] = PetscMax(most[1], PetscAbsReal(u[d]));
+    }
+  }
+  CkOk(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)body)));
+  return most[0] / most[1];
+}
+
+/* Of the field and of its distance from the solution: L2 norm of the displacement, energy norm (sigma:eps), 25 points a cell; relative */
+static inline void CkErrors(AbutBody body, const CkField *field, PetscReal *l2, PetscReal *energy)
+{
+  const AbutMeshTopology *t    = CkTopology(CkMeshOf(body));
+  const PetscReal         nu   = field->poisson, c = (1. + nu) / field->young;
+  PetscReal               sum[4] = {0., 0., 0., 0.}, z[5], w[5];
+  const PetscReal        *uh;
+
+  CkOk(PetscDTGaussQuadrature(5, 0., 1., z, w));
+  CkOk(AbutBodyGetVertexDisplacement(body, &uh));
+  for (PetscInt cell = 0; cell < t->ncells; ++cell)
+    for (PetscInt q = 0; q < 25; ++q) {
+      const PetscReal a = z[q / 5], b = z[q % 5], *corner[4];
+      PetscReal       xi[2] = {2. * a - 1., 2. * b - 1.}, x[2], N[4], G[8], det, s[2][3], u[2][2] = {{0., 0.}}, weight = 4. * w[q / 5] * w[q % 5];
+
+      if (t->corners == 3) { /* a square squeezed to a triangle */
+        xi[0]  = a;
+        xi[1]  = b * (1. - a);
+        weight = w[q / 5] * w[q % 5] * (1. - a);
+      }
+      CkOk(AbutMeshMapCell(CkMeshOf(body), cell, xi, x, N, G, &det));
+      CkOk(AbutBodyGetCellStress(body, cell, xi, s[0]));
+      field->at(field, x, u[1], s[1]);
+      for (PetscInt k = 0; k < t->corners; ++k) {
+        corner[k] = uh + 2 * t->cell[t->corners * cell + k];
+        for (PetscInt d = 0; d < 2; ++d) u[0][d] += N[k] * corner[k][d];
+      }
+      for (PetscInt of = 0; of < 2; ++of) {
+        const PetscReal *e = s[1];
+        PetscReal        d[3];
+
+        for (PetscInt i = 0; i < 3; ++i) d[i] = of ? e[i] : e[i] - s[0][i];
+        for (PetscInt i = 0; i < 2; ++i) sum[of] += weight * det * PetscSqr(u[1][i] - (of ? 0. : u[0][i]));
+        sum[2 + of] += weight * det * c * ((1. - nu) * (d[0] * d[0] + d[1] * d[1]) - 2. * nu * d[0] * d[1] + 2. * d[2] * d[2]);
+      }
+    }
+  CkOk(MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  *l2     = PetscSqrtReal(sum[0] / sum[1]);
+  *energy = PetscSqrtReal(sum[2] / sum[3]);
+}
