@@ -127,8 +127,11 @@ PetscErrorCode AbutBodyGetMaterial(AbutBody body, PetscReal *young, PetscReal *p
 @*/
 PetscErrorCode AbutBodySetFromOptions(AbutBody body)
 {
-  PetscReal young = body->young, poisson = body->poisson;
-  PetscBool hasyoung, haspoisson;
+  MPI_Comm    comm  = PetscObjectComm((PetscObject)body);
+  const char *name  = ((PetscObject)body)->name;
+  PetscReal   young = body->young, poisson = body->poisson;
+  PetscBool   hasyoung, haspoisson;
+  char        twice[256] = "";
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, ABUTBODY_CLASSID, 1);
@@ -136,11 +139,12 @@ PetscErrorCode AbutBodySetFromOptions(AbutBody body)
   PetscObjectOptionsBegin((PetscObject)body);
   PetscCall(AbutOptionsReal(PetscOptionsObject, "-material_young", "Young's modulus", &young, &hasyoung));
   PetscCall(AbutOptionsReal(PetscOptionsObject, "-material_poisson", "Poisson's ratio", &poisson, &haspoisson));
-  AbutCheckInput(body->young > 0. || (hasyoung && haspoisson), PetscObjectComm((PetscObject)body), "%s_material_%s: missing; give %s", ((PetscObject)body)->name, hasyoung ? "poisson" : "young",
-                 hasyoung ? "Poisson's ratio, for example 0.3" : "Young's modulus, for example 2.1e5");
-  PetscCall(AbutBodySetMaterial(body, young, poisson));
-  PetscCall(AbutBodySetConditionsFromOptions_Private(body, PetscOptionsObject));
+  PetscCall(AbutBodySetConditionsFromOptions_Private(body, PetscOptionsObject, twice, sizeof(twice)));
   PetscOptionsEnd();
+  AbutCheckInput(body->young > 0. || (hasyoung && haspoisson), comm, "%s_material_%s: missing; give %s", name, hasyoung ? "poisson" : "young",
+                 hasyoung ? "Poisson's ratio, for example 0.3" : "Young's modulus, for example 2.1e5");
+  AbutCheckInput(!twice[0], comm, "%s: the same component also has its displacement given; give one of the two", twice);
+  PetscCall(AbutBodySetMaterial(body, young, poisson));
   PetscCall(AbutBodyChooseSolver_Private(body, 0, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -15,8 +15,8 @@ static PetscErrorCode AbutBodySetCondition_Private(AbutBody body, PetscInt side,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The keys bc_SIDE_u1, bc_SIDE_u2, bc_SIDE_t1, bc_SIDE_t2 of every side */
-PetscErrorCode AbutBodySetConditionsFromOptions_Private(AbutBody body, AbutOptionItems PetscOptionsObject)
+/* The keys bc_SIDE_u1, bc_SIDE_u2, bc_SIDE_t1, bc_SIDE_t2 of every side; twice is one that says again, and otherwise, what another has said */
+PetscErrorCode AbutBodySetConditionsFromOptions_Private(AbutBody body, AbutOptionItems PetscOptionsObject, char twice[], size_t len)
 {
   PetscInt nsides;
 
@@ -36,7 +36,7 @@ PetscErrorCode AbutBodySetConditionsFromOptions_Private(AbutBody body, AbutOptio
         PetscCall(PetscSNPrintf(key, sizeof(key), "%s%s", ((PetscObject)body)->prefix, opt + 1));
         PetscCall(AbutOptionsString(PetscOptionsObject, opt, k ? "Traction of the side" : "Displacement of the side", text, sizeof(text), &given[k]));
         if (!given[k]) continue;
-        AbutCheckInput(!k || !given[0], PetscObjectComm((PetscObject)body), "%s: the same component also has its displacement given; give one of the two", key);
+        if (k && given[0]) PetscCall(PetscStrncpy(twice, key, len));
         PetscCall(AbutExpressionCreate(PetscObjectComm((PetscObject)body), key, text, &value));
         PetscCall(AbutBodySetCondition_Private(body, s, d, k ? ABUT_TRACTION : ABUT_DISPLACEMENT, value));
       }

@@ -212,8 +212,9 @@ PetscErrorCode AbutEstimatorGetType(AbutEstimator est, AbutEstimatorType *type)
    Input Parameter:
 .  est - the estimator
 
-   Options Database Key:
-.  -estimator_type <fembem> - the type
+   Options Database Keys:
++  -estimator_type <fembem> - the type
+-  -plugin_path folder      - where `libestimator_NAME.so` is, if not with `libabut.so`
 
    Level: beginner
 
@@ -221,7 +222,7 @@ PetscErrorCode AbutEstimatorGetType(AbutEstimator est, AbutEstimatorType *type)
 @*/
 PetscErrorCode AbutEstimatorSetFromOptions(AbutEstimator est)
 {
-  char type[256] = ABUTESTIMATORDEFAULT;
+  char type[256] = ABUTESTIMATORDEFAULT, folder[PETSC_MAX_PATH_LEN] = ""; /* the folder is for -help: AbutPluginLoad() reads it itself */
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(est, ABUTESTIMATOR_CLASSID, 1);
@@ -229,6 +230,8 @@ PetscErrorCode AbutEstimatorSetFromOptions(AbutEstimator est)
   PetscObjectOptionsBegin((PetscObject)est);
   PetscCall(AbutOptionsString(PetscOptionsObject, "-estimator_type", "how the error is estimated: the name of a plugin", type, sizeof(type),
                               NULL));
+  PetscCall(AbutOptionsString(PetscOptionsObject, "-plugin_path", "where libestimator_NAME.so is, if not with libabut.so", folder,
+                              sizeof(folder), NULL));
   PetscCall(AbutEstimatorSetType(est, type));
   PetscTryTypeMethod(est, setfromoptions, PetscOptionsObject);
   PetscOptionsEnd();

@@ -56,7 +56,7 @@ static PetscErrorCode AbutSceneLoop_Private(AbutScene scene, PetscBool *converge
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Estimates every body that asks for it; marks, if there is an adaptor. The verdict is the worst over the bodies. */
+/* Estimates every body that asks for it; marks, if there is an adaptor. As long as one body refines, the run goes on; then the worst verdict counts. */
 static PetscErrorCode AbutSceneEstimate_Private(AbutScene scene, PetscBool *marks[], AbutAdaptVerdict *verdict, PetscInt *nmarked)
 {
   PetscFunctionBegin;
@@ -79,8 +79,8 @@ static PetscErrorCode AbutSceneEstimate_Private(AbutScene scene, PetscBool *mark
     PetscCall(PetscMalloc1(t->ncells, &marks[b]));
     PetscCall(AbutAdaptorMark(scene->adaptor, scene->body[b], scene->eta[b], marks[b], &n, &one));
     *nmarked += n;
-    if (one == ABUT_ADAPT_REFINED && *verdict != ABUT_ADAPT_UNKNOWNS) *verdict = one;
-    else if (one != ABUT_ADAPT_REFINED && *verdict != ABUT_ADAPT_REFINED && one > *verdict) *verdict = one;
+    if (!n) PetscCall(PetscFree(marks[b])); /* this body's mesh stays */
+    if (one == ABUT_ADAPT_REFINED || (*verdict != ABUT_ADAPT_REFINED && one > *verdict)) *verdict = one;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

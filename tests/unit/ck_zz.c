@@ -259,19 +259,10 @@ START_TEST(a_locally_refined_mesh_is_judged_as_well)
 }
 END_TEST
 
-/* In meshes 8x5 on two ranks and 2x2 on three, some triangle touches the boundary by a vertex whose sides are all another rank's */
-START_TEST(all_numbers_of_ranks_give_the_same_estimate)
+static void CheckRanks(AbutShape shape, PetscInt nx, PetscInt ny, PetscInt refine)
 {
-  static const PetscInt n[4][3] = {
-    {8, 8, 3},
-    {8, 8, 3},
-    {8, 5, 0},
-    {2, 2, 0}
-  };
-  const AbutShape shape = _i ? ABUT_TRIANGLE : ABUT_QUAD;
-  AbutBody        all   = Solved(PETSC_COMM_WORLD, Smooth, shape, n[_i][0], n[_i][1], n[_i][2]);
-  AbutBody        one   = Solved(PETSC_COMM_SELF, Smooth, shape, n[_i][0], n[_i][1], n[_i][2]);
-  PetscReal       total[2], largest[2];
+  AbutBody  all = Solved(PETSC_COMM_WORLD, Smooth, shape, nx, ny, refine), one = Solved(PETSC_COMM_SELF, Smooth, shape, nx, ny, refine);
+  PetscReal total[2], largest[2];
 
   Estimate(all, &total[0], &largest[0]);
   Estimate(one, &total[1], &largest[1]);
@@ -279,6 +270,14 @@ START_TEST(all_numbers_of_ranks_give_the_same_estimate)
   ck_assert_double_eq_tol(largest[0], largest[1], 1e-10 * largest[1]);
   CkOk(AbutBodyDestroy(&all));
   CkOk(AbutBodyDestroy(&one));
+}
+
+/* Among several small meshes of triangles there are cuts where a rank holds a vertex of the boundary but no side at it */
+START_TEST(all_numbers_of_ranks_give_the_same_estimate)
+{
+  CheckRanks(ABUT_QUAD, 8, 8, 3);
+  CheckRanks(ABUT_TRIANGLE, 8, 8, 3);
+  for (PetscInt n = 2; n <= 6; ++n) CheckRanks(ABUT_TRIANGLE, n, 2, 0);
 }
 END_TEST
 
@@ -322,7 +321,7 @@ int main(int argc, char **argv)
   tcase_add_loop_test(tests, a_linear_stress_is_recovered_exactly_on_a_uniform_mesh, 0, 2);
   tcase_add_loop_test(tests, a_smooth_stress_is_recovered_an_order_better, 0, 2);
   tcase_add_loop_test(tests, a_locally_refined_mesh_is_judged_as_well, 0, 2);
-  tcase_add_loop_test(tests, all_numbers_of_ranks_give_the_same_estimate, 0, 4);
+  tcase_add_test(tests, all_numbers_of_ranks_give_the_same_estimate);
   tcase_add_loop_test(tests, the_estimate_is_close_to_the_error, 0, 2);
   tcase_add_loop_test(tests, a_body_without_inner_vertices_has_an_estimate, 0, 2);
   suite_add_tcase(suite, tests);

@@ -3,7 +3,7 @@
 
 With the penalty law theta p + K p = Delta - r0 x^2 on [-a, a] and p(a) = 0. A layer of height H answers cos(xi x) by C(xi) cos(xi x) with
 C = 2(1-nu^2)/(E xi) (cosh 2z - 1)/(sinh 2z + 2z), z = xi H. K is split in C0 tanh(xi)/xi, whose kernel is -C0/pi ln tanh(pi|x|/4), and a rest
-that decays like exp(-2 xi). Collocation with polynomials of degree 13 on panels that shrink towards a; needs NumPy and SciPy, runs for seconds.
+that decays like exp(-2 xi). Collocation with polynomials of degree 13 on panels that shrink towards a; needs NumPy and SciPy, takes half a minute.
 It shares nothing with Abut; a, p(0) and the force agree with examples/layers/reference.json, bodies of length 4, to 1.5e-7.
 """
 import numpy as np

@@ -41,7 +41,7 @@ struct _p_AbutBody {
   PetscInt      assemblycells;
 };
 
-PETSC_INTERN PetscErrorCode AbutBodySetConditionsFromOptions_Private(AbutBody, AbutOptionItems);
+PETSC_INTERN PetscErrorCode AbutBodySetConditionsFromOptions_Private(AbutBody, AbutOptionItems, char[], size_t);
 PETSC_INTERN PetscErrorCode AbutBodyConditionsSetUp_Private(AbutBody);
 PETSC_INTERN PetscErrorCode AbutBodyCheckHeld_Private(AbutBody);
 PETSC_INTERN PetscErrorCode AbutBodyEdgeMoments_Private(AbutBody, PetscInt, PetscInt, const PetscReal[2], const PetscReal[2], PetscReal[2]);

@@ -1,0 +1,376 @@
+#include "ckbody.h"
+#include <abutscene.h>
+
+/* The patch test of contact: two boxes pressed together evenly. Whatever the meshes, the displacements are linear and the pressure is
+   p = (delta - gap)/(theta + sum H (1-nu^2)/E). One-sided quadrature of the contact forces is off by some per cent here. */
+
+#define DELTA 0.01
+#define GAP   0.002
+#define THETA 0.5
+
+/* Of both bodies: the base, held on its far side, and the punch, pushed by delta */
+static const PetscReal height[2] = {1., 0.7}, young[2] = {1., 3.}, poisson[2] = {0.3, 0.2};
+
+typedef struct {
+  PetscInt  along;            /* the direction of the sides in contact: 0 punch on base, 1 punch to the right of the base */
+  PetscReal low[2], high[2];  /* ends of these sides */
+  PetscInt  cells[2];         /* along them */
+  AbutShape shape[2];
+  PetscInt  levels[2];        /* refinements of the cells at the first half of the side */
+  PetscBool held[2];          /* the displacement normal to the contact is prescribed on the free end of the body too */
+} Patch;
+
+/* clang-format off */
+static const Patch patches[] = {
+  {.high = {1., 1.}, .cells = {4, 4}},
+  {.high = {1., 1.}, .cells = {3, 4}},
+  {.high = {1., 1.}, .cells = {3, 3}, .shape = {ABUT_QUAD, ABUT_TRIANGLE}},
+  {.high = {1., 1.}, .cells = {5, 3}, .shape = {ABUT_TRIANGLE, ABUT_QUAD}, .along = 1},
+  {.high = {1., 1.}, .cells = {4, 3}, .levels = {2, 0}},
+  {.high = {1., 1.}, .cells = {4, 4}, .shape = {ABUT_TRIANGLE, ABUT_QUAD}, .levels = {2, 1}, .along = 1},
+  {.high = {1., 1.}, .cells = {1, 100}},
+  {.high = {1., 1.}, .cells = {3, 4}, .held = {PETSC_TRUE, PETSC_TRUE}},
+  {.high = {1., 1.}, .cells = {4, 4}, .held = {PETSC_TRUE, PETSC_FALSE}},
+  {.high = {1., 1.}, .cells = {4, 3}, .held = {PETSC_FALSE, PETSC_TRUE}, .levels = {0, 1}},
+  /* sides of unequal length, beside each other */
+  {.low = {0., 0.37}, .high = {3., 2.21}, .cells = {7, 5}},
+  {.low = {0., -0.4}, .high = {3., 1.6}, .cells = {7, 50}, .shape = {ABUT_QUAD, ABUT_TRIANGLE}},
+  {.low = {-0.1, 0.}, .high = {1.7, 2.}, .cells = {9, 6}, .along = 1},
+  {.low = {0., 0.7}, .high = {3., 0.9}, .cells = {2, 3}},    /* within one element */
+  {.low = {0., 2.999}, .high = {3., 4.}, .cells = {3, 4}},   /* a thousandth of one */
+  {.low = {0., 1e-6}, .high = {3., 2. + 1e-6}, .cells = {3, 3}}
+};
+/* clang-format on */
+static const int npatches = PETSC_STATIC_ARRAY_LENGTH(patches), first_unequal = 10;
+
+/* What the bits of a variant say: pressures on the second side of the pair; the punch is the first body of the pair; the free ends are those of small x or y */
+static PetscBool Bit(PetscInt variant, PetscInt bit)
+{
+  return (PetscBool)(variant >> bit & 1);
+}
+
+static const PetscInt nvariants = 8;
+
+static PetscReal Overlap(const Patch *patch, PetscReal *from, PetscReal *to)
+{
+  *from = PetscMax(patch->low[0], patch->low[1]);
+  *to   = PetscMin(patch->high[0], patch->high[1]);
+  return *to - *from;
+}
+
+static PetscReal Pressure(void)
+{
+  PetscReal sum = THETA;
+
+  for (PetscInt b = 0; b < 2; ++b) sum += height[b] * (1. - poisson[b] * poisson[b]) / young[b];
+  return (DELTA - GAP) / sum;
+}
+
+/* One of the two bodies, as a field for the functions of ckbody.h, which hand `field` back */
+typedef struct {
+  CkField      field;
+  const Patch *patch;
+  PetscInt     b;
+  PetscReal    origin; /* the end of the side that does not move along it */
+} Box;
+
+static void Evenly(const CkField *field, const PetscReal x[2], PetscReal u[2], PetscReal s[3])
+{
+  const Box      *box = (const Box *)field;
+  const PetscInt  b = box->b, along = box->patch->along, across = !along;
+  const PetscReal p = Pressure(), support = b ? height[0] + height[1] : 0.;
+
+  u[along]  = p * poisson[b] * (1. + poisson[b]) / young[b] * (x[along] - box->origin);
+  u[across] = (b ? -DELTA : 0.) - p * (1. - poisson[b] * poisson[b]) / young[b] * (x[across] - support);
+  s[along]  = 0.;
+  s[across] = -p;
+  s[2]      = 0.;
+}
+
+/* The same even pressure where the other body does not reach: on the element with its end, the linear function with the same nodal forces */
+static PetscErrorCode PressureBeside(const PetscReal x[2], PetscReal *value, void *ctx)
+{
+  const Box      *box = (const Box *)ctx;
+  const PetscInt  b = box->b, along = box->patch->along;
+  const PetscReal low = box->patch->low[b], h = (box->patch->high[b] - low) / box->patch->cells[b];
+  const PetscReal at = (x[along] - low) / h, left = PetscFloorReal(at), z = at - left;
+  PetscReal       from, to, l, r, m[2];
+
+  Overlap(box->patch, &from, &to);
+  l      = PetscMin(PetscMax((from - low) / h - left, 0.), 1.); /* the part [l,r] of the element is in contact */
+  r      = PetscMax(PetscMin((to - low) / h - left, 1.), l);
+  m[1]   = 0.5 - 0.5 * (r * r - l * l);
+  m[0]   = 1. - (r - l) - m[1];
+  *value = (b ? 1. : -1.) * Pressure() * ((4. * m[0] - 2. * m[1]) * (1. - z) + (4. * m[1] - 2. * m[0]) * z);
+  return PETSC_SUCCESS;
+}
+
+static PetscBool InFirstHalf(AbutMesh mesh, PetscInt c, PetscInt along)
+{
+  PetscReal x[2], lower[2], upper[2];
+
+  CkCenter(CkTopology(mesh), c, x);
+  CkOk(AbutMeshGetBox(mesh, lower, upper));
+  return (PetscBool)(x[along] < 0.5 * (lower[along] + upper[along]));
+}
+
+static const char *const name[2] = {"base", "punch"};
+static const char *const side[4] = {"left", "right", "bottom", "top"};
+
+static AbutScene Create(const Patch *patch, PetscInt variant, const char gap[])
+{
+  const PetscBool punchfirst = Bit(variant, 1);
+  char            text[4096], part[512];
+  AbutScene       scene;
+
+  CkOk(PetscSNPrintf(text, sizeof(text), "-scene_bodies base,punch -scene_pairs mid -mid_pair_bodies %s,%s -mid_pair_sides %s,%s -mid_pair_gap %s -mid_pair_theta %g -mid_pair_pressure_side %s "
+                     "-snes_ddneumann_start nocontact -snes_rtol 1e-12", name[punchfirst], name[!punchfirst],
+                     side[2 * !patch->along + !punchfirst], side[2 * !patch->along + punchfirst], gap, THETA, Bit(variant, 0) ? "second" : "first"));
+  for (PetscInt b = 0; b < 2; ++b) {
+    const PetscReal low = b ? height[0] : 0.;
+    PetscReal       corner[4] = {patch->low[b], low, patch->high[b], low + height[b]};
+    PetscInt        cells[2] = {patch->cells[b], 2};
+
+    for (PetscInt k = 0; k < 4 && patch->along; k += 2) corner[k] = low + (k ? height[b] : 0.), corner[k + 1] = k ? patch->high[b] : patch->low[b];
+    CkOk(PetscSNPrintf(part, sizeof(part), " -%s_mesh_box %.15g,%.15g,%.15g,%.15g -%s_mesh_cells %d,%d -%s_mesh_shape %s -%s_material_young %g -%s_material_poisson %g", name[b], corner[0], corner[1],
+                       corner[2], corner[3], name[b], (int)cells[patch->along], (int)cells[!patch->along], name[b], patch->shape[b] == ABUT_QUAD ? "quad" : "triangle", name[b], young[b], name[b], poisson[b]));
+    CkOk(PetscStrlcat(text, part, sizeof(text)));
+  }
+  CkOptions(text);
+  CkOk(AbutSceneCreate(PETSC_COMM_WORLD, &scene));
+  CkOk(AbutSceneSetFromOptions(scene));
+  return scene;
+}
+
+static void Destroy(AbutScene *scene)
+{
+  CkOk(AbutSceneDestroy(scene));
+  CkOptionsEnd();
+}
+
+/* The conditions and the mesh of a body; beside: what the other body does not cover is pressed all the same */
+static AbutBody Prepare(AbutScene scene, Box *box, PetscInt variant, PetscBool beside)
+{
+  const Patch   *patch  = box->patch;
+  const PetscInt b = box->b, along = patch->along, across = !along;
+  const char    *still = side[2 * along + Bit(variant, 2)], *end = side[2 * along + !Bit(variant, 2)];
+  AbutBody       body;
+  AbutMesh       mesh;
+
+  box->field.at      = Evenly;
+  box->field.young   = young[b];
+  box->field.poisson = poisson[b];
+  box->origin        = Bit(variant, 2) ? patch->high[b] : patch->low[b];
+  CkOk(AbutSceneGetBody(scene, name[b], &body));
+  CkGive(body, &box->field, still, along ? "-u" : "u-");
+  CkGive(body, &box->field, side[2 * across + b], along ? "u-" : "-u");
+  if (patch->held[b]) CkGive(body, &box->field, end, along ? "u-" : "-u");
+  if (beside) CkOk(AbutBodySetTraction(body, side[2 * across + !b], across, PressureBeside, box));
+  CkOk(AbutBodyGetMesh(body, &mesh));
+  CkOk(AbutMeshSetUp(mesh));
+  for (PetscInt level = 0; level < patch->levels[b]; ++level) {
+    const AbutMeshTopology *t = CkTopology(mesh);
+    PetscBool              *marks;
+
+    CkOk(PetscCalloc1(t->ncells, &marks));
+    for (PetscInt c = 0; c < t->ncells; ++c) marks[c] = InFirstHalf(mesh, c, along);
+    CkOk(AbutMeshAdapt(mesh, marks));
+    CkOk(PetscFree(marks));
+  }
+  return body;
+}
+
+/* Does the hat function of a node reach into the common part of both sides? What reaches in by less than a thousandth of an element may carry no pressure */
+static int Reaches(const PetscReal x[], PetscInt n, PetscInt i, PetscInt along, PetscReal from, PetscReal to)
+{
+  PetscReal low = x[2 * i + along], high = low;
+
+  for (PetscInt k = PetscMax(i - 1, 0); k <= PetscMin(i + 1, n - 1); ++k) {
+    low  = PetscMin(low, x[2 * k + along]);
+    high = PetscMax(high, x[2 * k + along]);
+  }
+  if (PetscMin(high, to) - PetscMax(low, from) < 1e-12) return 0;
+  return PetscMin(high, to) - PetscMax(low, from) < 1.1e-3 * (high - low) ? -1 : 1;
+}
+
+static void CheckPressures(AbutScene scene, const Patch *patch, PetscInt variant, PetscBool exact)
+{
+  const PetscInt   carrier = Bit(variant, 0) != Bit(variant, 1), held = Bit(variant, 2) ? 0 : 1; /* the held node is at the far end, opposite to the still one */
+  const PetscReal *p, *x, *D;
+  PetscReal        from, to, length = Overlap(patch, &from, &to);
+  AbutInterface    iface;
+  AbutPairState    state;
+  AbutPair         pair;
+  PetscInt         number, which, n;
+
+  CkOk(AbutSceneGetInterface(scene, &iface));
+  CkOk(AbutSceneGetPair(scene, "mid", &pair, &number));
+  CkOk(AbutInterfaceGetPressure(iface, number, &p));
+  CkOk(AbutPairGetPressureNodes(pair, &which, &n, &x, &D));
+  ck_assert_int_eq(which, Bit(variant, 0));
+  for (PetscInt i = 0; i < n; ++i) {
+    const PetscBool atheld = (PetscBool)(patch->held[carrier] && PetscAbsReal(x[2 * i + patch->along] - (held ? patch->high : patch->low)[carrier]) < 1e-12);
+    const int       reaches = Reaches(x, n, i, patch->along, from, to);
+
+    if (reaches >= 0) ck_assert_int_eq(D[i] > 0., reaches && !atheld);
+    if (D[i] == 0.) ck_assert_double_eq(p[i], 0.);
+    else if (exact) ck_assert_double_eq_tol(p[i], Pressure(), 1e-9 * Pressure());
+    else ck_assert(p[i] >= 0. && !PetscIsInfOrNanReal(p[i]));
+  }
+  CkOk(AbutInterfaceGetPairState(iface, number, &state));
+  ck_assert_double_lt(state.balance, 1e-12);
+  if (!exact) return;
+  ck_assert_double_eq_tol(state.contact_length, length, 1e-12 * length);
+  ck_assert_double_eq_tol(state.force, Pressure() * length, 1e-9 * Pressure() * length);
+}
+
+START_TEST(an_even_pressure_is_exact_on_any_meshes)
+{
+  const Patch   *patch   = &patches[_i / nvariants];
+  const PetscInt variant = _i % nvariants, unequal = _i / nvariants >= first_unequal;
+  AbutScene      scene   = Create(patch, variant, "0.002");
+  Box            box[2]  = {{.patch = patch, .b = 0}, {.patch = patch, .b = 1}};
+  AbutBody       body[2];
+  PetscInt       status;
+
+  for (PetscInt b = 0; b < 2; ++b) body[b] = Prepare(scene, &box[b], variant, (PetscBool)unequal);
+  CkOk(AbutSceneSolve(scene));
+  CkOk(AbutSceneGetExitStatus(scene, &status));
+  ck_assert_int_eq(status, 0);
+  for (PetscInt b = 0; b < 2; ++b) ck_assert_double_lt(CkNodalError(body[b], &box[b].field), 1e-10);
+  CheckPressures(scene, patch, variant, PETSC_TRUE);
+  Destroy(&scene);
+}
+END_TEST
+
+/* With nothing beside the common part the pressure is not even; it stays finite, acts only there, and is what holds the bodies */
+START_TEST(sides_of_unequal_length_are_in_balance)
+{
+  const Patch   *patch   = &patches[first_unequal + _i / nvariants];
+  const PetscInt variant = _i % nvariants, across = !patch->along;
+  AbutScene      scene   = Create(patch, variant, "0.002");
+  Box            box[2]  = {{.patch = patch, .b = 0}, {.patch = patch, .b = 1}};
+  AbutBody       body[2];
+  AbutInterface  iface;
+  AbutPairState  state;
+  PetscInt       status;
+
+  CkOk(PetscOptionsSetValue(NULL, "-snes_rtol", "1e-9"));
+  for (PetscInt b = 0; b < 2; ++b) body[b] = Prepare(scene, &box[b], variant, PETSC_FALSE);
+  CkOk(AbutSceneSolve(scene));
+  CkOk(AbutSceneGetExitStatus(scene, &status));
+  ck_assert_int_eq(status, 0);
+  CheckPressures(scene, patch, variant, PETSC_FALSE);
+  CkOk(AbutSceneGetInterface(scene, &iface));
+  CkOk(AbutInterfaceGetPairState(iface, 0, &state));
+  ck_assert_double_gt(state.force, 0.);
+  for (PetscInt b = 0; b < 2; ++b) {
+    PetscReal reaction[2], applied[2];
+
+    CkOk(AbutBodyGetReaction(body[b], reaction, applied));
+    ck_assert_double_eq_tol(reaction[across], b ? -state.force : state.force, 1e-10 * state.force);
+  }
+  Destroy(&scene);
+}
+END_TEST
+
+static PetscReal HatMoment(PetscReal a, PetscReal b, PetscReal from, PetscReal to)
+{
+  const PetscReal l = PetscMax(PetscMin(a, b), from), r = PetscMin(PetscMax(a, b), to);
+
+  return r > l ? PetscAbsReal(((r - b) + (l - b)) * (r - l) / (2. * (a - b))) : 0.;
+}
+
+/* The integral of the hat function of a node over the common part; its element towards node k spans from 1 at the node to 0 at k */
+static PetscReal Tributary(const AbutSide *s, PetscInt i, PetscInt along, PetscReal from, PetscReal to)
+{
+  PetscReal length = 0.;
+
+  for (PetscInt k = i - 1; k <= i + 1; k += 2)
+    if (k >= 0 && k < s->n) length += HatMoment(s->x[2 * i + along], s->x[2 * k + along], from, to);
+  return length;
+}
+
+static void PairOf(AbutScene scene, AbutPair *pair, const AbutSide *sides[2])
+{
+  AbutBody body[2];
+  PetscInt number[2], n;
+
+  CkOk(AbutSceneSetUp(scene));
+  CkOk(AbutSceneGetPair(scene, "mid", pair, &n));
+  CkOk(AbutPairGetBodies(*pair, body, number));
+  for (PetscInt s = 0; s < 2; ++s) CkOk(AbutBodyGetSide(body[s], number[s], &sides[s]));
+}
+
+START_TEST(a_pressure_of_one_gives_every_node_its_tributary_length)
+{
+  const Patch    *patch   = &patches[_i / nvariants];
+  const PetscInt  variant = _i % nvariants;
+  AbutScene       scene   = Create(patch, variant, "0");
+  Box             box[2]  = {{.patch = patch, .b = 0}, {.patch = patch, .b = 1}};
+  const PetscReal length  = Overlap(patch, &(PetscReal){0.}, &(PetscReal){0.});
+  const AbutSide *s[2];
+  PetscReal      *p, *f[2], from, to;
+  AbutPair        pair;
+
+  Overlap(patch, &from, &to);
+  for (PetscInt b = 0; b < 2; ++b) Prepare(scene, &box[b], variant, PETSC_FALSE);
+  PairOf(scene, &pair, s);
+  CkOk(PetscMalloc3(s[0]->n + s[1]->n, &p, s[0]->n, &f[0], s[1]->n, &f[1]));
+  for (PetscInt i = 0; i < s[0]->n + s[1]->n; ++i) p[i] = 1.;
+  CkOk(AbutPairComputeForce(pair, p, f[0], f[1]));
+  for (PetscInt k = 0; k < 2; ++k)
+    for (PetscInt i = 0; i < s[k]->n; ++i) ck_assert_double_eq_tol(f[k][i], Tributary(s[k], i, patch->along, from, to), 1e-12 * length);
+  CkOk(PetscFree3(p, f[0], f[1]));
+  Destroy(&scene);
+}
+END_TEST
+
+/* u_n = c0 + c1 t on both sides, f = 0.002 + 0.01 t: the nodal penetrations are the values at the nodes, wherever the elements are cut */
+START_TEST(a_linear_penetration_is_found_at_every_node)
+{
+  const Patch     *patch   = &patches[_i / nvariants];
+  const PetscInt   variant = _i % nvariants;
+  AbutScene        scene   = Create(patch, variant, patch->along ? "0.002+0.01*y" : "0.002+0.01*x");
+  Box              box[2]  = {{.patch = patch, .b = 0}, {.patch = patch, .b = 1}};
+  const AbutSide  *s[2];
+  const PetscReal *x, *D, c[2][2] = {{0.7, 0.2}, {0.5, -0.1}};
+  PetscReal       *u[2], *p;
+  AbutPair         pair;
+  PetscInt         which, n, carrying = 0;
+
+  for (PetscInt b = 0; b < 2; ++b) Prepare(scene, &box[b], variant, PETSC_FALSE);
+  PairOf(scene, &pair, s);
+  CkOk(AbutPairGetPressureNodes(pair, &which, &n, &x, &D));
+  CkOk(PetscMalloc3(s[0]->n, &u[0], s[1]->n, &u[1], n, &p));
+  for (PetscInt k = 0; k < 2; ++k)
+    for (PetscInt i = 0; i < s[k]->n; ++i) u[k][i] = c[k][0] + c[k][1] * s[k]->x[2 * i + patch->along];
+  CkOk(AbutPairComputePressure(pair, u[0], u[1], p));
+  for (PetscInt i = 0; i < n; ++i) {
+    if (D[i] == 0.) continue;
+    ck_assert_double_eq_tol(p[i] * THETA, 1.2 - 0.002 + 0.09 * x[2 * i + patch->along], 1e-9);
+    ++carrying;
+  }
+  ck_assert_int_gt(carrying, 0);
+  CkOk(PetscFree3(u[0], u[1], p));
+  Destroy(&scene);
+}
+END_TEST
+
+int main(int argc, char **argv)
+{
+  Suite *suite = suite_create("patch");
+  TCase *tests = tcase_create("contact");
+  int    status;
+
+  PetscCall(AbutInitialize(&argc, &argv, NULL));
+  tcase_set_timeout(tests, 0);
+  tcase_add_loop_test(tests, an_even_pressure_is_exact_on_any_meshes, 0, npatches * nvariants);
+  tcase_add_loop_test(tests, sides_of_unequal_length_are_in_balance, 0, (npatches - first_unequal) * nvariants);
+  tcase_add_loop_test(tests, a_pressure_of_one_gives_every_node_its_tributary_length, 0, npatches * nvariants);
+  tcase_add_loop_test(tests, a_linear_penetration_is_found_at_every_node, 0, npatches * nvariants);
+  suite_add_tcase(suite, tests);
+  status = CkRun(suite);
+  PetscCall(AbutFinalize());
+  return status;
+}
