@@ -31,6 +31,7 @@ PETSC_EXTERN PetscErrorCode AbutBodySetTraction(AbutBody, const char[], PetscInt
 PETSC_EXTERN PetscErrorCode AbutBodySetContact(AbutBody, PetscInt);
 PETSC_EXTERN PetscErrorCode AbutBodyGetCondition(AbutBody, PetscInt, PetscInt, AbutConditionType *);
 PETSC_EXTERN PetscErrorCode AbutBodySetFromOptions(AbutBody);
+PETSC_EXTERN PetscErrorCode AbutBodyCheck(AbutBody);
 PETSC_EXTERN PetscErrorCode AbutBodySetUp(AbutBody);
 PETSC_EXTERN PetscErrorCode AbutBodyView(AbutBody, PetscViewer);
 PETSC_EXTERN PetscErrorCode AbutBodyDestroy(AbutBody *);

@@ -31,6 +31,7 @@ typedef struct {
 PETSC_EXTERN PetscClassId   ABUTPAIR_CLASSID;
 PETSC_EXTERN PetscErrorCode AbutPairCreate(MPI_Comm, const char[], AbutPair *);
 PETSC_EXTERN PetscErrorCode AbutPairSetFromOptions(AbutPair, PetscInt, AbutBody[]);
+PETSC_EXTERN PetscErrorCode AbutPairCheck(AbutPair);
 PETSC_EXTERN PetscErrorCode AbutPairSetUp(AbutPair);
 PETSC_EXTERN PetscErrorCode AbutPairView(AbutPair, PetscViewer);
 PETSC_EXTERN PetscErrorCode AbutPairDestroy(AbutPair *);

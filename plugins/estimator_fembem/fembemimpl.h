@@ -3,6 +3,8 @@
 #include <abutbody.h>
 #include "kernels.h"
 
+#define FEMBEM_SLACK 1e-9 /* relative: lengths and distances that differ by less are equal */
+
 /*
    The boundary elements of one body, eq. (25), as complex arrays: displacements linear and continuous round each contour, tractions linear
    in each element and free to jump between elements. Everything below works on this alone and needs neither mesh nor body.

@@ -176,7 +176,7 @@ static PetscErrorCode SystemAssemble(System *s)
   }
   for (PetscInt i = 0; i < s->b->n; ++i) {
     for (PetscInt j = i; j < s->b->n; ++j) {
-      const PetscInt o = s->e[j].h < s->e[i].h ? j : i, p = i + j - o;
+      const PetscInt o = s->e[j].h < (1. - FEMBEM_SLACK) * s->e[i].h ? j : i, p = i + j - o;
 
       PetscCall(AddPair(s, o, &local[o], p, &local[p], PETSC_FALSE));
       if (i != j) PetscCall(AddPair(s, p, &local[p], o, &local[o], PETSC_TRUE));

@@ -4,6 +4,7 @@
    Outer integral of one pair of elements; the inner one is exact. Near pairs: Gauss's rule with 8 points after s = x^3 (10 - 15 x + 6 x^2),
    which takes the logarithms out of the ends (a patch test is met to 4e-6, a smooth problem to 1e-4 of its discretisation error).
    The further away the inner element, the fewer points of the plain rule give the same; a much smaller one nearby has the outer one halved.
+   On a regular mesh distances and lengths are often equal to these limits: FEMBEM_SLACK keeps round-off, and so the unit of length, from deciding.
 */
 typedef struct {
   PetscReal from; /* smallest distance of the inner element, in lengths of the outer one */
@@ -87,7 +88,7 @@ static void AddPart(const FembemElement *outer, const FembemElement *inner, Pets
   const OuterRule   *rule     = rules;
   FembemIntegrals    v;
 
-  if (distance < 1. && size > 2. * inner->h && !own) {
+  if (distance < 1. - FEMBEM_SLACK && size > (2. + FEMBEM_SLACK) * inner->h && !own) {
     const PetscReal half[2][2] = {
       {s[0],   middle},
       {middle, s[1]  }
@@ -97,7 +98,7 @@ static void AddPart(const FembemElement *outer, const FembemElement *inner, Pets
     AddPart(outer, inner, own, half[1], sums);
     return;
   }
-  while (distance < rule->from) ++rule;
+  while (distance < rule->from - FEMBEM_SLACK) ++rule;
   for (PetscInt g = 0; g < rule->n; ++g) {
     const PetscReal x = s[0] + (s[1] - s[0]) * rule->x[g], w = rule->w[g] * size, N[2] = {(1. - x) * w, x * w};
 

@@ -1,4 +1,5 @@
 #include <abut/private/bodyimpl.h> /*I "abutbody.h" I*/
+#include <abut/private/sysimpl.h>
 
 PetscClassId  ABUTBODY_CLASSID;
 PetscLogEvent ABUTBODY_Assemble, ABUTBODY_Solve;
@@ -131,7 +132,7 @@ PetscErrorCode AbutBodySetFromOptions(AbutBody body)
   const char *name  = ((PetscObject)body)->name;
   PetscReal   young = body->young, poisson = body->poisson;
   PetscBool   hasyoung, haspoisson;
-  char        twice[256] = "";
+  char        twice[256] = "", solver[256];
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, ABUTBODY_CLASSID, 1);
@@ -145,7 +146,8 @@ PetscErrorCode AbutBodySetFromOptions(AbutBody body)
                  hasyoung ? "Poisson's ratio, for example 0.3" : "Young's modulus, for example 2.1e5");
   AbutCheckInput(!twice[0], comm, "%s: the same component also has its displacement given; give one of the two", twice);
   PetscCall(AbutBodySetMaterial(body, young, poisson));
-  PetscCall(AbutBodyChooseSolver_Private(body, 0, PETSC_TRUE));
+  PetscCall(PetscSNPrintf(solver, sizeof(solver), "%s_ksp_*, %s_pc_*", name, name));
+  AbutCallOptions(comm, solver, AbutBodyChooseSolver_Private(body, 0, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -169,6 +171,7 @@ PetscErrorCode AbutBodySetUp(AbutBody body)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, ABUTBODY_CLASSID, 1);
   PetscCheck(body->young > 0., PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call AbutBodySetMaterial() or AbutBodySetFromOptions() first");
+  if (body->generation < 0) PetscCall(AbutBodyCheck(body));
   PetscCall(AbutMeshSetUp(body->mesh));
   PetscCall(AbutMeshGetGeneration(body->mesh, &generation));
   if (generation == body->generation) PetscFunctionReturn(PETSC_SUCCESS);
@@ -182,7 +185,6 @@ PetscErrorCode AbutBodySetUp(AbutBody body)
   PetscCall(VecDuplicate(body->load, &body->rhs));
   PetscCall(AbutBodyBoundarySetUp_Private(body));
   PetscCall(AbutBodyConditionsSetUp_Private(body));
-  PetscCall(AbutBodyCheckHeld_Private(body));
   PetscCall(AbutBodyAssemble_Private(body));
   PetscCall(AbutBodyChooseSolver_Private(body, 2 * t->nglobal, PETSC_FALSE));
   PetscCall(KSPSetOperators(body->ksp, body->A, body->A));

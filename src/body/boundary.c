@@ -1,7 +1,7 @@
 #include <abut/private/bodyimpl.h> /*I "abutbody.h" I*/
 
-/* The boundary of a body gathered on every rank: it is one-dimensional, so it is small. Element sides are chained into closed contours with the body on
-   the left; the trace of the finite-element mesh is the boundary-element mesh, eqs. (25), (26) of the paper. */
+/* The boundary of a body gathered on every rank: it is one-dimensional, so it is small. Element sides are chained into closed contours with
+   the body on the left; the trace of the finite-element mesh is the boundary-element mesh, eqs. (25), (26) of the paper. */
 
 /* One element side as it travels */
 typedef struct {
@@ -67,10 +67,10 @@ static PetscInt AbutBoundaryFind_Private(PetscInt n, const AbutElementSide all[]
   return low;
 }
 
-/* Each contour begins at the lowest, then leftmost, of its nodes at which one side ends and the next begins: the same for every distribution */
+/* Each contour begins at the lowest, then leftmost, node at which one side ends and the next begins: the same for every distribution */
 static PetscErrorCode AbutBoundaryChain_Private(PetscInt n, const AbutElementSide all[], AbutBoundary *b, PetscInt global[])
 {
-  PetscInt *next, *previous, first, k = 0;
+  PetscInt  *next, *previous, first, k = 0;
   PetscBool *used;
 
   PetscFunctionBegin;
@@ -91,11 +91,11 @@ static PetscErrorCode AbutBoundaryChain_Private(PetscInt n, const AbutElementSid
     PetscCheck(first >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "A contour has no node where one side ends and the next begins");
     b->contour[b->ncontours++] = k;
     for (PetscInt i = first; !used[i]; i = next[i]) {
-      used[i]     = PETSC_TRUE;
-      b->side[k]  = all[i].side;
-      global[k]   = all[i].start;
-      b->end[k]   = k + 1;
-      b->x[2 * k] = all[i].x[0];
+      used[i]         = PETSC_TRUE;
+      b->side[k]      = all[i].side;
+      global[k]       = all[i].start;
+      b->end[k]       = k + 1;
+      b->x[2 * k]     = all[i].x[0];
       b->x[2 * k + 1] = all[i].x[1];
       ++k;
     }

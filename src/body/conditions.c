@@ -179,21 +179,22 @@ PetscErrorCode AbutBodyEdgeMoments_Private(AbutBody body, PetscInt side, PetscIn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Every rank integrates over the whole gathered boundary and keeps its own rows: a traction that is not finite ends the run on all ranks */
 static PetscErrorCode AbutBodyLoad_Private(AbutBody body, const AbutMeshTopology *t)
 {
-  PetscFunctionBegin;
-  for (PetscInt e = 0; e < t->nsideedges; ++e) {
-    const PetscInt *edge = t->sideedge + 3 * e;
+  const AbutBoundary *b = body->boundary;
 
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < b->n; ++i)
     for (PetscInt d = 0; d < 2; ++d) {
-      const PetscInt row[2] = {2 * t->global[t->unknown[edge[0]]] + d, 2 * t->global[t->unknown[edge[1]]] + d};
+      const PetscInt vertex[2] = {body->boundaryglobal[i], body->boundaryglobal[b->end[i]]};
       PetscReal      m[2];
 
-      if (body->condition[edge[2]][d].type != ABUT_TRACTION || !body->condition[edge[2]][d].value) continue;
-      PetscCall(AbutBodyEdgeMoments_Private(body, edge[2], d, t->x + 2 * edge[0], t->x + 2 * edge[1], m));
-      PetscCall(VecSetValues(body->load, 2, row, m, ADD_VALUES));
+      if (body->condition[b->side[i]][d].type != ABUT_TRACTION || !body->condition[b->side[i]][d].value) continue;
+      PetscCall(AbutBodyEdgeMoments_Private(body, b->side[i], d, b->x + 2 * i, b->x + 2 * b->end[i], m));
+      for (PetscInt k = 0; k < 2; ++k)
+        if (vertex[k] >= t->firstowned && vertex[k] < t->firstowned + t->nowned) PetscCall(VecSetValue(body->load, 2 * vertex[k] + d, m[k], ADD_VALUES));
     }
-  }
   PetscCall(VecAssemblyBegin(body->load));
   PetscCall(VecAssemblyEnd(body->load));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -245,24 +246,25 @@ PetscErrorCode AbutBodyConditionsSetUp_Private(AbutBody body)
 }
 
 /* A body on which some rigid motion is free has no solution of its own: say which motion, rather than divide by almost zero */
-PetscErrorCode AbutBodyCheckHeld_Private(AbutBody body)
+static PetscErrorCode AbutBodyCheckHeld_Private(AbutBody body)
 {
-  const AbutBoundary *b = body->boundary;
-  PetscReal           center[2] = {0., 0.}, size = 0., sum[2] = {0., 0.}, sum2 = 0., held;
-  PetscBool           u[2] = {PETSC_FALSE, PETSC_FALSE};
-  PetscInt            n[2] = {0, 0};
+  MPI_Comm    comm = PetscObjectComm((PetscObject)body);
+  const char *name = ((PetscObject)body)->name;
+  PetscReal   lower[2], upper[2], sum[2] = {0., 0.}, sum2 = 0., size;
+  PetscInt    nsides, n[2] = {0, 0};
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < b->n; ++i)
-    for (PetscInt d = 0; d < 2; ++d) center[d] += b->x[2 * i + d] / b->n;
-  for (PetscInt i = 0; i < b->n; ++i)
-    for (PetscInt d = 0; d < 2; ++d) size = PetscMax(size, PetscAbsReal(b->x[2 * i + d] - center[d]));
-  for (PetscInt i = 0; i < b->n; ++i)
+  PetscCall(AbutMeshGetBox(body->mesh, lower, upper));
+  PetscCall(AbutMeshGetSideCount(body->mesh, &nsides));
+  size = PetscMax(upper[0] - lower[0], upper[1] - lower[1]);
+  for (PetscInt s = 0; s < nsides; ++s)
     for (PetscInt d = 0; d < 2; ++d) {
-      if (body->condition[b->side[i]][d].type != ABUT_DISPLACEMENT) continue;
-      u[d] = PETSC_TRUE;
+      PetscReal ends[4], normal[2];
+
+      if (body->condition[s][d].type != ABUT_DISPLACEMENT) continue;
+      PetscCall(AbutMeshGetSideEnds(body->mesh, s, ends, normal));
       for (PetscInt end = 0; end < 2; ++end) {
-        const PetscReal arm = (b->x[2 * (end ? b->end[i] : i) + !d] - center[!d]) / size;
+        const PetscReal arm = (ends[2 * end + !d] - lower[!d]) / size;
 
         ++n[d];
         sum[d] += arm;
@@ -270,12 +272,52 @@ PetscErrorCode AbutBodyCheckHeld_Private(AbutBody body)
       }
     }
   for (PetscInt d = 0; d < 2; ++d)
-    AbutCheckInput(u[d], PetscObjectComm((PetscObject)body), "%s: nothing holds this body along %s; prescribe u%d on one of its sides, for example %s_bc_%s_u%d: 0", ((PetscObject)body)->name,
-                   d ? "y" : "x", (int)d + 1, ((PetscObject)body)->name, d ? "bottom" : "left", (int)d + 1);
+    AbutCheckInput(n[d], comm, "%s: nothing holds this body along %s; prescribe u%d on one of its sides, for example %s_bc_%s_u%d: 0", name, d ? "y" : "x", (int)d + 1, name, d ? "bottom" : "left", (int)d + 1);
   /* a rotation about some point leaves all prescribed components in peace exactly if the arms are constant in each component */
-  held = sum2 - sum[0] * sum[0] / n[0] - sum[1] * sum[1] / n[1];
-  AbutCheckInput(held > 1e-10, PetscObjectComm((PetscObject)body), "%s: this body is free to turn; prescribe a displacement normal to a side of some length, for example %s_bc_bottom_u2: 0",
-                 ((PetscObject)body)->name, ((PetscObject)body)->name);
+  AbutCheckInput(sum2 - sum[0] * sum[0] / n[0] - sum[1] * sum[1] / n[1] > 1e-10, comm,
+                 "%s: this body is free to turn; prescribe a displacement normal to a side of some length, for example %s_bc_bottom_u2: 0", name, name);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+#define ABUT_SAMPLES 32
+
+/*@
+   AbutBodyCheck - Ends the run if nothing holds the body, or if what is given on a side is not a finite number there; needs no mesh yet
+
+   Collective
+
+   Input Parameter:
+.  body - the body, its box and its conditions set
+
+   Level: developer
+
+   Note:
+   Looks at some points of each side. A traction may be infinite at an end.
+
+.seealso: `AbutBodySetUp()`, `AbutPairCheck()`
+@*/
+PetscErrorCode AbutBodyCheck(AbutBody body)
+{
+  PetscInt nsides;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, ABUTBODY_CLASSID, 1);
+  PetscCall(AbutMeshGetSideCount(body->mesh, &nsides));
+  for (PetscInt s = 0; s < nsides; ++s)
+    for (PetscInt d = 0; d < 2; ++d) {
+      const AbutCondition *c = &body->condition[s][d];
+      PetscReal            ends[4], normal[2], value;
+
+      if (!c->value) continue;
+      PetscCall(AbutMeshGetSideEnds(body->mesh, s, ends, normal));
+      for (PetscInt i = 0; i < ABUT_SAMPLES; ++i) {
+        const PetscReal z    = c->type == ABUT_DISPLACEMENT ? i / (ABUT_SAMPLES - 1.) : (i + 0.5) / ABUT_SAMPLES;
+        const PetscReal x[2] = {(1. - z) * ends[0] + z * ends[2], (1. - z) * ends[1] + z * ends[3]};
+
+        PetscCall(AbutExpressionEvaluate(c->value, x, &value));
+      }
+    }
+  PetscCall(AbutBodyCheckHeld_Private(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -66,12 +66,14 @@ PetscErrorCode AbutBodyGetSide(AbutBody body, PetscInt side, const AbutSide **s)
     for (PetscInt d = 0; d < 2; ++d) out->x[2 * i + d] = b->x[2 * node + d];
   }
   for (PetscInt i = 0; i < n; ++i) {
-    const PetscReal d[2] = {out->x[2 * i + 2] - out->x[2 * i], out->x[2 * i + 3] - out->x[2 * i + 1]}, h = PetscSqrtReal(d[0] * d[0] + d[1] * d[1]);
+    const PetscReal d[2] = {out->x[2 * i + 2] - out->x[2 * i], out->x[2 * i + 3] - out->x[2 * i + 1]},
+                    h    = PetscSqrtReal(d[0] * d[0] + d[1] * d[1]);
 
     out->normal[2 * i]     = d[1] / h;
     out->normal[2 * i + 1] = -d[0] / h;
   }
-  for (PetscInt i = 0, node = first; i <= n; ++i, node = b->end[node]) out->fixed[i] = AbutNodeIsFixed_Private(body, node, out->normal + 2 * PetscMin(i, n - 1));
+  for (PetscInt i = 0, node = first; i <= n; ++i, node = b->end[node])
+    out->fixed[i] = AbutNodeIsFixed_Private(body, node, out->normal + 2 * PetscMin(i, n - 1));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

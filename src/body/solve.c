@@ -39,8 +39,8 @@ PetscErrorCode AbutBodyCreateSolver_Private(AbutBody body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BoomerAMG keeps the numbering of the unknowns of its first matrix, and reads beyond its end when a larger matrix follows: each mesh gets a new one.
-   At our strong threshold it takes 8 iterations where hypre's own 0.25 takes 94. */
+/* BoomerAMG keeps the numbering of the unknowns of its first matrix, and reads beyond its end when a larger one follows: each mesh gets a
+   new one. At our strong threshold it takes 8 iterations where hypre's own 0.25 takes 94. */
 static PetscErrorCode AbutBodyRenewHypre_Private(AbutBody body)
 {
   char      name[256];
@@ -87,7 +87,7 @@ PetscErrorCode AbutBodyChooseSolver_Private(AbutBody body, PetscInt n, PetscBool
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Displacement at every local vertex: unknown ones from the solution and its ghosts, hanging ones as the mean of the ends of the coarse side */
+/* Displacement at every local vertex: that of a hanging one is the mean of the ends of the coarse side */
 static PetscErrorCode AbutBodySpread_Private(AbutBody body)
 {
   const AbutMeshTopology *t;

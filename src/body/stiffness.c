@@ -1,6 +1,7 @@
 #include <abut/private/bodyimpl.h> /*I "abutbody.h" I*/
 
-/* Element matrices and their assembly. Hanging unknowns are replaced by the ends of the coarse side in the index list, weights 1/2 in the element matrix. */
+/* Element matrices and their assembly. Hanging unknowns are replaced by the ends of the coarse side in the index list, with weights 1/2 in
+   the element matrix. */
 
 #define ABUT_MAX_CELL_VERTICES 8 /* a cell's own corners, two for each that hangs */
 
@@ -13,7 +14,9 @@ PetscErrorCode AbutCellStiffness_Private(AbutBody body, PetscInt c, PetscReal K[
     {0.57735026918962576,  0.57735026918962576 },
     {-0.57735026918962576, 0.57735026918962576 }
   };
-  static const PetscReal  triangle[1][2] = {{1. / 3., 1. / 3.}};
+  static const PetscReal triangle[1][2] = {
+    {1. / 3., 1. / 3.}
+  };
   const AbutMeshTopology *t;
   PetscInt                n, npoints;
 
@@ -31,8 +34,9 @@ PetscErrorCode AbutCellStiffness_Private(AbutBody body, PetscInt c, PetscReal K[
     m = det * body->mu;
     for (PetscInt a = 0; a < n; ++a)
       for (PetscInt b = 0; b < n; ++b) {
-        const PetscReal xx = G[2 * a] * G[2 * b], xy = G[2 * a] * G[2 * b + 1], yx = G[2 * a + 1] * G[2 * b], yy = G[2 * a + 1] * G[2 * b + 1];
-        PetscReal      *k = K + 4 * n * a + 2 * b;
+        const PetscReal xx = G[2 * a] * G[2 * b], xy = G[2 * a] * G[2 * b + 1], yx = G[2 * a + 1] * G[2 * b],
+                        yy = G[2 * a + 1] * G[2 * b + 1];
+        PetscReal *k       = K + 4 * n * a + 2 * b;
 
         k[0] += l * xx + m * (2. * xx + yy);
         k[1] += l * xy + m * yx;
@@ -51,10 +55,10 @@ static PetscInt AbutCellAnchors_Private(const AbutMeshTopology *t, PetscInt c, P
   *hanging = PETSC_FALSE;
   for (PetscInt i = 0; i < t->corners * ABUT_MAX_CELL_VERTICES; ++i) W[i] = 0.;
   for (PetscInt k = 0; k < t->corners; ++k) {
-    const PetscInt  v = t->cell[t->corners * c + k], count = t->anchor[2 * v] < 0 ? 1 : 2;
+    const PetscInt v = t->cell[t->corners * c + k], count = t->anchor[2 * v] < 0 ? 1 : 2;
 
     for (PetscInt i = 0; i < count; ++i) {
-      const PetscInt a = count == 1 ? v : t->anchor[2 * v + i];
+      const PetscInt a  = count == 1 ? v : t->anchor[2 * v + i];
       PetscInt       at = 0;
 
       while (at < n && vertex[at] != a) ++at;
@@ -151,8 +155,8 @@ static PetscErrorCode AbutBodyValues_Private(AbutBody body, const AbutMeshTopolo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Prescribed unknowns stay in the system (block size 2 is what makes BoomerAMG work): their rows are kept aside for the lift of the right-hand side and
-   for the reactions, then rows and columns are cleared with mu on the diagonal */
+/* Prescribed unknowns stay in the system (block size 2 is what makes BoomerAMG work): their rows are kept aside for the lift of the
+   right-hand side and for the reactions, then rows and columns are cleared with mu on the diagonal */
 PetscErrorCode AbutBodyAssemble_Private(AbutBody body)
 {
   const AbutMeshTopology *t;

@@ -128,7 +128,8 @@ PetscErrorCode AbutBodyGetPointValues(AbutBody body, const PetscReal x[2], Petsc
     sum[5] += 1.;
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 6, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
-  AbutCheckInput(sum[5] > 0., PetscObjectComm((PetscObject)body), "%s: the point (%g, %g) lies outside this body", ((PetscObject)body)->name, (double)x[0], (double)x[1]);
+  AbutCheckInput(sum[5] > 0., PetscObjectComm((PetscObject)body), "%s: the point (%g, %g) lies outside this body",
+                 ((PetscObject)body)->name, (double)x[0], (double)x[1]);
   for (PetscInt i = 0; i < 5; ++i) value[i] = sum[i] / sum[5];
   value[5] = body->poisson * (value[2] + value[3]);
   PetscCall(AbutVonMises(value + 2, body->poisson, &value[6]));
@@ -164,7 +165,8 @@ PetscErrorCode AbutBodyGetEnergy(AbutBody body, PetscReal *strain, PetscReal *wo
 
     PetscCall(AbutCellStiffness_Private(body, c, K));
     for (PetscInt i = 0; i < n; ++i)
-      for (PetscInt j = 0; j < n; ++j) sum += 0.5 * K[n * i + j] * body->vertexu[2 * v[i / 2] + i % 2] * body->vertexu[2 * v[j / 2] + j % 2];
+      for (PetscInt j = 0; j < n; ++j)
+        sum += 0.5 * K[n * i + j] * body->vertexu[2 * v[i / 2] + i % 2] * body->vertexu[2 * v[j / 2] + j % 2];
   }
   PetscCallMPI(MPI_Allreduce(&sum, strain, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
   PetscCall(VecDot(body->load, body->u, &w[0]));

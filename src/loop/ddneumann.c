@@ -30,7 +30,7 @@ static PetscErrorCode SNESSetFromOptions_DDNeumann(SNES snes, AbutOptionItems Pe
   PetscFunctionBegin;
   PetscOptionsHeadBegin(PetscOptionsObject, "SNES ddneumann options");
   PetscCall(AbutOptionsReal(PetscOptionsObject, "-snes_ddneumann_gamma", "Relaxation", &dd->gamma, &set));
-  AbutCheckInput(!set || dd->gamma > 0., PetscObjectComm((PetscObject)snes), "snes_ddneumann_gamma: %g; give a positive number, or leave it out for 2/(2+C/theta)", (double)dd->gamma);
+  AbutCheckInput(!set || dd->gamma >= 0., PetscObjectComm((PetscObject)snes), "snes_ddneumann_gamma: %g; give a positive number, or 0 for 2/(2+C/theta)", (double)dd->gamma);
   PetscCall(AbutOptionsReal(PetscOptionsObject, "-snes_ddneumann_eps", "Relative change of the paper's stop test", &dd->eps, &set));
   AbutCheckInput(!set || dd->eps > 0., PetscObjectComm((PetscObject)snes), "snes_ddneumann_eps: %g; give a positive number, for example 0.0015", (double)dd->eps);
   PetscCall(AbutOptionsEnum(PetscOptionsObject, "-snes_ddneumann_stop", "Stop test", AbutStops, &dd->stop, NULL));
@@ -127,7 +127,7 @@ static PetscErrorCode SNESDestroy_DDNeumann(SNES snes)
    SNESDDNEUMANN - The paper's parallel Neumann domain decomposition, eqs. (17)-(21): one solve per body with the pressures of the last iterate, then relaxation
 
    Options Database Keys:
-+  -snes_ddneumann_gamma <gamma>               - relaxation; default 2/(2+C/theta), C = sum of H(1-nu^2)/E
++  -snes_ddneumann_gamma <0>                   - relaxation; 0 means 2/(2+C/theta), C = sum of H(1-nu^2)/E
 .  -snes_ddneumann_start <winkler,nocontact,zero> - first trace, see `AbutInterfaceComputeStart()`
 .  -snes_ddneumann_stop <residual,paper>       - the fixed-point residual with -snes_rtol (default), or the paper's relative change per sweep
 -  -snes_ddneumann_eps <0.0015>                - the paper's eps_u

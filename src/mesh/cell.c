@@ -41,10 +41,11 @@ static void AbutCellShape_Private(PetscInt corners, const PetscReal xi[2], Petsc
 
 .seealso: `AbutMeshInvertCell()`, `AbutMeshGetTopology()`
 @*/
-PetscErrorCode AbutMeshMapCell(AbutMesh mesh, PetscInt c, const PetscReal xi[2], PetscReal x[2], PetscReal N[], PetscReal G[], PetscReal *det)
+PetscErrorCode AbutMeshMapCell(AbutMesh mesh, PetscInt c, const PetscReal xi[2], PetscReal x[2], PetscReal N[], PetscReal G[],
+                               PetscReal *det)
 {
-  const AbutMeshTopology *t    = &mesh->topology;
-  const PetscInt         *v    = t->cell + t->corners * c;
+  const AbutMeshTopology *t = &mesh->topology;
+  const PetscInt         *v = t->cell + t->corners * c;
   PetscReal               dN[8], J[4] = {0., 0., 0., 0.}, d;
 
   PetscFunctionBegin;
@@ -125,6 +126,7 @@ PetscErrorCode AbutMeshInvertCell(AbutMesh mesh, PetscInt c, const PetscReal x[2
     xi[1] += step[1];
     if (PetscAbsReal(step[0]) + PetscAbsReal(step[1]) < 1e-13) break;
   }
-  *inside = t->corners == 3 ? (PetscBool)(xi[0] > -margin && xi[1] > -margin && xi[0] + xi[1] < 1. + margin) : (PetscBool)(PetscAbsReal(xi[0]) < 1. + margin && PetscAbsReal(xi[1]) < 1. + margin);
+  *inside = t->corners == 3 ? (PetscBool)(xi[0] > -margin && xi[1] > -margin && xi[0] + xi[1] < 1. + margin)
+                            : (PetscBool)(PetscAbsReal(xi[0]) < 1. + margin && PetscAbsReal(xi[1]) < 1. + margin);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -19,7 +19,7 @@ static int AbutForestIsMarked_Private(PETSC_UNUSED p4est_t *p4est, PETSC_UNUSED 
   return quadrant->p.user_int;
 }
 
-/* Two children of a side and their middle have numbers in DMPlex's reference tree; p4est's own numbering differs, so they are told by incidence */
+/* Two children of a side and their middle have numbers in DMPlex's reference tree, not p4est's: they are told by incidence */
 static PetscErrorCode AbutForestReferenceIds_Private(DM reference, PetscInt ids[3])
 {
   PetscInt        eStart, eEnd, side = -1, nchildren;
@@ -52,10 +52,11 @@ static PetscErrorCode AbutForestReferenceIds_Private(DM reference, PetscInt ids[
 
 static PetscErrorCode AbutForestSetTree_Private(DM dm, const AbutPlexData *data)
 {
-  const PetscInt *child = (const PetscInt *)data->children->array, *parent = (const PetscInt *)data->parents->array, n = (PetscInt)data->children->elem_count;
-  DM              reference;
-  PetscSection    section;
-  PetscInt        pStart, pEnd, reference_ids[3], *ids;
+  const PetscInt *child = (const PetscInt *)data->children->array, *parent = (const PetscInt *)data->parents->array,
+                 n = (PetscInt)data->children->elem_count;
+  DM           reference;
+  PetscSection section;
+  PetscInt     pStart, pEnd, reference_ids[3], *ids;
 
   PetscFunctionBegin;
   PetscCall(DMPlexCreateDefaultReferenceTree(PetscObjectComm((PetscObject)dm), 2, PETSC_FALSE, &reference));
@@ -121,7 +122,8 @@ static PetscErrorCode AbutForestFillPlex_Private(DM dm, const AbutPlexData *data
   PetscCall(PetscMalloc1(2 * nv, &xy));
   for (size_t i = 0; i < nv; ++i)
     for (int d = 0; d < 2; ++d) xy[2 * i + d] = ((const double *)sc_array_index(data->coordinates, i))[d];
-  PetscCall(DMPlexCreateFromDAG(dm, 2, (PetscInt *)data->points->array, (PetscInt *)data->conesizes->array, (PetscInt *)data->cones->array, orientation, xy));
+  PetscCall(DMPlexCreateFromDAG(dm, 2, (PetscInt *)data->points->array, (PetscInt *)data->conesizes->array, (PetscInt *)data->cones->array,
+                                orientation, xy));
   PetscCall(PetscFree(xy));
   PetscCall(DMPlexSetMaxProjectionHeight(dm, 1));
   PetscCall(AbutForestSetTree_Private(dm, data));
@@ -132,13 +134,15 @@ static PetscErrorCode AbutForestFillPlex_Private(DM dm, const AbutPlexData *data
 static PetscErrorCode AbutForestToPlex_Private(AbutMesh mesh, p4est_t *p4est, DM *dm)
 {
   AbutPlexData   data;
-  sc_array_t   **array[] = {&data.points, &data.conesizes, &data.cones, &data.orientations, &data.coordinates, &data.children, &data.parents, &data.childids, &data.leaves, &data.remotes};
+  sc_array_t   **array[] = {&data.points,   &data.conesizes, &data.cones,    &data.orientations, &data.coordinates,
+                            &data.children, &data.parents,   &data.childids, &data.leaves,       &data.remotes};
   p4est_locidx_t first;
 
   PetscFunctionBegin;
-  for (int i = 0; i < 10; ++i) *array[i] = sc_array_new(i == 4 ? 3 * sizeof(double) : (i == 9 ? 2 * sizeof(p4est_locidx_t) : sizeof(p4est_locidx_t)));
-  p4est_get_plex_data(p4est, P4EST_CONNECT_FULL, 0, &first, data.points, data.conesizes, data.cones, data.orientations, data.coordinates, data.children, data.parents, data.childids,
-                      data.leaves, data.remotes);
+  for (int i = 0; i < 10; ++i)
+    *array[i] = sc_array_new(i == 4 ? 3 * sizeof(double) : (i == 9 ? 2 * sizeof(p4est_locidx_t) : sizeof(p4est_locidx_t)));
+  p4est_get_plex_data(p4est, P4EST_CONNECT_FULL, 0, &first, data.points, data.conesizes, data.cones, data.orientations, data.coordinates,
+                      data.children, data.parents, data.childids, data.leaves, data.remotes);
   PetscCall(DMCreate(PetscObjectComm((PetscObject)mesh), dm));
   PetscCall(DMSetType(*dm, DMPLEX));
   PetscCall(DMSetDimension(*dm, 2));
@@ -188,7 +192,8 @@ static PetscErrorCode AbutMeshRefine_Forest(AbutMesh mesh, const PetscBool marks
   for (p4est_topidx_t t = p4est->first_local_tree; t <= p4est->last_local_tree; ++t) {
     p4est_tree_t *tree = p4est_tree_array_index(p4est->trees, t);
 
-    for (size_t q = 0; q < tree->quadrants.elem_count; ++q) p4est_quadrant_array_index(&tree->quadrants, q)->p.user_int = marks[c++] ? 1 : 0;
+    for (size_t q = 0; q < tree->quadrants.elem_count; ++q)
+      p4est_quadrant_array_index(&tree->quadrants, q)->p.user_int = marks[c++] ? 1 : 0;
   }
   p4est_refine(p4est, 0, AbutForestIsMarked_Private, NULL);
   p4est_balance(p4est, P4EST_CONNECT_FACE, NULL); /* across sides only: the paper's extra rule */
@@ -220,7 +225,7 @@ PetscErrorCode AbutMeshCreate_Forest(AbutMesh mesh)
     p4est_init(NULL, SC_LP_ERROR);
   }
   PetscCall(PetscNew(&forest));
-  mesh->data          = forest;
+  mesh->data           = forest;
   mesh->ops->create    = AbutMeshCreate_Forest_DM;
   mesh->ops->refine    = AbutMeshRefine_Forest;
   mesh->ops->getlevels = AbutMeshGetLevels_Forest;

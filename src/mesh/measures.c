@@ -1,16 +1,20 @@
 #include <abut/private/meshimpl.h> /*I "abutmesh.h" I*/
 
 /* Diameters of the circles around and inside a triangle */
-static void AbutTriangleDiameters_Private(const PetscReal a[2], const PetscReal b[2], const PetscReal c[2], PetscReal *around, PetscReal *inside)
+static void AbutTriangleDiameters_Private(const PetscReal a[2], const PetscReal b[2], const PetscReal c[2], PetscReal *around,
+                                          PetscReal *inside)
 {
-  const PetscReal ab = PetscSqrtReal(PetscSqr(b[0] - a[0]) + PetscSqr(b[1] - a[1])), bc = PetscSqrtReal(PetscSqr(c[0] - b[0]) + PetscSqr(c[1] - b[1]));
-  const PetscReal ca = PetscSqrtReal(PetscSqr(a[0] - c[0]) + PetscSqr(a[1] - c[1])), area = 0.5 * PetscAbsReal((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
+  const PetscReal ab   = PetscSqrtReal(PetscSqr(b[0] - a[0]) + PetscSqr(b[1] - a[1])),
+                  bc   = PetscSqrtReal(PetscSqr(c[0] - b[0]) + PetscSqr(c[1] - b[1]));
+  const PetscReal ca   = PetscSqrtReal(PetscSqr(a[0] - c[0]) + PetscSqr(a[1] - c[1])),
+                  area = 0.5 * PetscAbsReal((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
 
   *around = ab * bc * ca / (2. * area);
   *inside = 4. * area / (ab + bc + ca);
 }
 
-/* Upper and lower diameter of a cell, the paper's Definition 1: of a triangle its two circles, of a quadrilateral the extremes over the four triangles of its vertices */
+/* Upper and lower diameter of a cell, the paper's Definition 1: of a triangle its two circles, of a quadrilateral the extremes over the
+   four triangles of its vertices */
 static void AbutCellDiameters_Private(const AbutMeshTopology *t, PetscInt c, PetscReal *upper, PetscReal *lower)
 {
   const PetscInt *v = t->cell + t->corners * c, n = t->corners == 3 ? 1 : 4;
@@ -20,7 +24,8 @@ static void AbutCellDiameters_Private(const AbutMeshTopology *t, PetscInt c, Pet
   for (PetscInt k = 0; k < n; ++k) {
     PetscReal around, inside;
 
-    AbutTriangleDiameters_Private(t->x + 2 * v[k], t->x + 2 * v[(k + 1) % t->corners], t->x + 2 * v[(k + 2) % t->corners], &around, &inside);
+    AbutTriangleDiameters_Private(t->x + 2 * v[k], t->x + 2 * v[(k + 1) % t->corners], t->x + 2 * v[(k + 2) % t->corners], &around,
+                                  &inside);
     *upper = PetscMax(*upper, around);
     *lower = PetscMin(*lower, inside);
   }
@@ -51,9 +56,9 @@ static PetscReal AbutEdgeLength_Private(const AbutMeshTopology *t, PetscInt a, P
 @*/
 PetscErrorCode AbutMeshGetMeasures(AbutMesh mesh, AbutMeshMeasures *m)
 {
-  const AbutMeshTopology *t    = &mesh->topology;
-  MPI_Comm                comm = PetscObjectComm((PetscObject)mesh);
-  PetscReal               high[5] = {0., 0., 0., 0., PETSC_MIN_REAL}, lower, upper; /* h_fe, h_be, regularity, level_max, -h_min */
+  const AbutMeshTopology *t          = &mesh->topology;
+  MPI_Comm                comm       = PetscObjectComm((PetscObject)mesh);
+  PetscReal               high[5]    = {0., 0., 0., 0., PETSC_MIN_REAL}, lower, upper; /* h_fe, h_be, regularity, level_max, -h_min */
   PetscReal               onboundary = 0.;
 
   PetscFunctionBegin;
@@ -62,7 +67,8 @@ PetscErrorCode AbutMeshGetMeasures(AbutMesh mesh, AbutMeshMeasures *m)
     high[0] = PetscMax(high[0], upper);
     high[2] = PetscMax(high[2], upper / lower);
     high[3] = PetscMax(high[3], (PetscReal)t->level[c]);
-    for (PetscInt k = 0; k < t->corners; ++k) high[4] = PetscMax(high[4], -AbutEdgeLength_Private(t, t->cell[t->corners * c + k], t->cell[t->corners * c + (k + 1) % t->corners]));
+    for (PetscInt k = 0; k < t->corners; ++k)
+      high[4] = PetscMax(high[4], -AbutEdgeLength_Private(t, t->cell[t->corners * c + k], t->cell[t->corners * c + (k + 1) % t->corners]));
   }
   for (PetscInt e = 0; e < t->nsideedges; ++e) {
     high[1] = PetscMax(high[1], AbutEdgeLength_Private(t, t->sideedge[3 * e], t->sideedge[3 * e + 1]));

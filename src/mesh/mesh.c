@@ -72,9 +72,12 @@ PetscErrorCode AbutMeshSetBox(AbutMesh mesh, const PetscReal lower[2], const Pet
   PetscFunctionBegin;
   PetscValidHeaderSpecific(mesh, ABUTMESH_CLASSID, 1);
   PetscCheck(!mesh->setupcalled, comm, PETSC_ERR_ORDER, "Call AbutMeshSetBox() before AbutMeshSetUp()");
-  AbutCheckInput(lower[0] < upper[0] && lower[1] < upper[1], comm, "%smesh_box: %g,%g,%g,%g has no area; give x0,y0,x1,y1 with x0 < x1 and y0 < y1", prefix, (double)lower[0],
+  AbutCheckInput(lower[0] < upper[0] && lower[1] < upper[1], comm,
+                 "%smesh_box: %g,%g,%g,%g has no area; give x0,y0,x1,y1 with x0 < x1 and y0 < y1", prefix, (double)lower[0],
                  (double)lower[1], (double)upper[0], (double)upper[1]);
-  AbutCheckInput(cells[0] > 0 && cells[1] > 0 && cells[0] <= 1000000 / cells[1] * 100, comm, "%smesh_cells: %" PetscInt_FMT ",%" PetscInt_FMT "; give two numbers from 1 up, at most 1e8 cells in all", prefix, cells[0], cells[1]);
+  AbutCheckInput(cells[0] > 0 && cells[1] > 0 && cells[0] <= 1000000 / cells[1] * 100, comm,
+                 "%smesh_cells: %" PetscInt_FMT ",%" PetscInt_FMT "; give two numbers from 1 up, at most 1e8 cells in all", prefix,
+                 cells[0], cells[1]);
   for (PetscInt d = 0; d < 2; ++d) {
     mesh->lower[d] = lower[d];
     mesh->upper[d] = upper[d];
@@ -99,8 +102,8 @@ PetscErrorCode AbutMeshSetBox(AbutMesh mesh, const PetscReal lower[2], const Pet
 @*/
 PetscErrorCode AbutMeshSetFromOptions(AbutMesh mesh)
 {
-  const char *prefix = ((PetscObject)mesh)->prefix ? ((PetscObject)mesh)->prefix : "";
-  PetscReal   box[4] = {mesh->lower[0], mesh->lower[1], mesh->upper[0], mesh->upper[1]};
+  const char *prefix   = ((PetscObject)mesh)->prefix ? ((PetscObject)mesh)->prefix : "";
+  PetscReal   box[4]   = {mesh->lower[0], mesh->lower[1], mesh->upper[0], mesh->upper[1]};
   PetscInt    cells[2] = {mesh->cells[0], mesh->cells[1]}, shape = mesh->shape, order = 1;
   PetscBool   hasbox, hascells, hasshape;
 
@@ -113,7 +116,8 @@ PetscErrorCode AbutMeshSetFromOptions(AbutMesh mesh)
   PetscCall(AbutOptionsInt(PetscOptionsObject, "-mesh_order", "Order of the displacement", &order, NULL));
   PetscOptionsEnd();
   AbutCheckInput(order == 1, PetscObjectComm((PetscObject)mesh), "%smesh_order: %" PetscInt_FMT " is not there; give 1", prefix, order);
-  AbutCheckInput(mesh->boxset || (hasbox && hascells), PetscObjectComm((PetscObject)mesh), "%smesh_%s: missing; give %s", prefix, hasbox ? "cells" : "box",
+  AbutCheckInput(mesh->boxset || (hasbox && hascells), PetscObjectComm((PetscObject)mesh), "%smesh_%s: missing; give %s", prefix,
+                 hasbox ? "cells" : "box",
                  hasbox ? "the cells along each direction, for example 8,2" : "the corners x0,y0,x1,y1 of the box, for example 0,0,4,1");
   if (hasbox || hascells || hasshape) PetscCall(AbutMeshSetBox(mesh, box, box + 2, cells, (AbutShape)shape));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -150,7 +154,8 @@ PetscErrorCode AbutMeshSetUp(AbutMesh mesh)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(mesh, ABUTMESH_CLASSID, 1);
   if (mesh->setupcalled) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(mesh->boxset, PetscObjectComm((PetscObject)mesh), PETSC_ERR_ARG_WRONGSTATE, "Call AbutMeshSetBox() or AbutMeshSetFromOptions() first");
+  PetscCheck(mesh->boxset, PetscObjectComm((PetscObject)mesh), PETSC_ERR_ARG_WRONGSTATE,
+             "Call AbutMeshSetBox() or AbutMeshSetFromOptions() first");
   mesh->setupcalled = PETSC_TRUE;
   PetscCall((mesh->shape == ABUT_QUAD ? AbutMeshCreate_Forest : AbutMeshCreate_Triangles)(mesh));
   PetscUseTypeMethod(mesh, create, &dm);
@@ -170,7 +175,8 @@ PetscErrorCode AbutMeshSetUp(AbutMesh mesh)
    Level: intermediate
 
    Notes:
-   Quadrilaterals are split in four and kept 2:1 across sides, which is the paper's extra rule against spurious refinement; triangles are bisected until the mesh conforms.
+   Quadrilaterals are split in four and kept 2:1 across sides, which is the paper's extra rule against spurious refinement;
+   triangles are split in four by bisections, and their neighbours bisected until the mesh conforms.
    Every array got from the mesh before is no longer valid.
 
 .seealso: `AbutMeshGetTopology()`, `AbutMeshGetGeneration()`, `AbutAdaptorMark()`
@@ -325,7 +331,9 @@ PetscErrorCode AbutMeshView(AbutMesh mesh, PetscViewer viewer)
   PetscFunctionBegin;
   PetscCall(AbutMeshGetCellCount(mesh, &ncells));
   PetscCall(AbutMeshGetMeasures(mesh, &m));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "mesh: %s, %" PetscInt_FMT " cells, %" PetscInt_FMT " vertices with unknowns, levels up to %" PetscInt_FMT ", smallest side %g\n",
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "mesh: %s, %" PetscInt_FMT " cells, %" PetscInt_FMT
+                                   " vertices with unknowns, levels up to %" PetscInt_FMT ", smallest side %g\n",
                                    AbutShapeNames[mesh->shape], ncells, mesh->topology.nglobal, m.level_max, (double)m.h_min));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

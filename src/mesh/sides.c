@@ -7,8 +7,8 @@ static const char *const AbutSideNames[ABUT_BOX_SIDES] = {"left", "right", "bott
 static PetscInt AbutSideOf_Private(AbutMesh mesh, const PetscReal a[2], const PetscReal b[2])
 {
   for (PetscInt s = 0; s < ABUT_BOX_SIDES; ++s) {
-    const PetscInt  d   = s / 2;
-    const PetscReal at  = s % 2 ? mesh->upper[d] : mesh->lower[d], tol = 1e-10 * (mesh->upper[d] - mesh->lower[d]) / mesh->cells[d];
+    const PetscInt  d  = s / 2;
+    const PetscReal at = s % 2 ? mesh->upper[d] : mesh->lower[d], tol = 1e-10 * (mesh->upper[d] - mesh->lower[d]) / mesh->cells[d];
 
     if (PetscAbsReal(a[d] - at) < tol && PetscAbsReal(b[d] - at) < tol) return s;
   }
@@ -25,7 +25,8 @@ PetscErrorCode AbutMeshSidesBuild_Private(AbutMesh mesh)
     if (pass) PetscCall(PetscMalloc2(3 * room, &edge, room, &cell));
     for (PetscInt c = 0; c < t->ncells; ++c)
       for (PetscInt k = 0; k < t->corners; ++k) {
-        const PetscInt a = t->cell[t->corners * c + k], b = t->cell[t->corners * c + (k + 1) % t->corners], side = AbutSideOf_Private(mesh, t->x + 2 * a, t->x + 2 * b);
+        const PetscInt a = t->cell[t->corners * c + k], b = t->cell[t->corners * c + (k + 1) % t->corners],
+                       side = AbutSideOf_Private(mesh, t->x + 2 * a, t->x + 2 * b);
 
         if (side < 0) continue;
         if (!pass) {
@@ -117,7 +118,8 @@ PetscErrorCode AbutMeshFindSide(AbutMesh mesh, const char key[], const char name
     *side = s;
     if (match) PetscFunctionReturn(PETSC_SUCCESS);
   }
-  SETERRQ(PetscObjectComm((PetscObject)mesh), PETSC_ERR_USER_INPUT, "%s: there is no side \"%s\"; a box has left, right, bottom, top", key, name);
+  SETERRQ(PetscObjectComm((PetscObject)mesh), PETSC_ERR_USER_INPUT, "%s: there is no side \"%s\"; a box has left, right, bottom, top", key,
+          name);
 }
 
 /*@

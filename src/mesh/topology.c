@@ -66,13 +66,13 @@ static PetscErrorCode AbutTopologyCells_Private(AbutMesh mesh, PetscInt cStart, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Hanging vertices carry no unknowns. Owned vertices come first in the local count, then those of other ranks in the order of the DMPLEX. */
+/* Hanging vertices carry no unknowns. Owned vertices come first, then those of other ranks, each in the order of the DMPLEX. */
 static PetscErrorCode AbutTopologyNumbering_Private(AbutMesh mesh, PetscInt vStart)
 {
-  AbutMeshTopology *t = &mesh->topology;
-  PetscSF           sf;
-  PetscInt          pStart, pEnd, nroots, nleaves, *number, *unknown, *global, next = 0, ghost;
-  const PetscInt   *leaves;
+  AbutMeshTopology  *t = &mesh->topology;
+  PetscSF            sf;
+  PetscInt           pStart, pEnd, nroots, nleaves, *number, *unknown, *global, next = 0, ghost;
+  const PetscInt    *leaves;
   const PetscSFNode *remote;
 
   PetscFunctionBegin;

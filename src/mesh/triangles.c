@@ -3,14 +3,95 @@
 
 /* Triangles: DMPlex, refined by bisection (DMPLEXREFINESBR), which keeps the mesh conforming and its angles bounded */
 
-static PetscErrorCode AbutTrianglesDistribute_Private(DM *dm)
+#define ABUT_CURVE_BITS 26 /* of each coordinate: both together are exact in a double */
+
+/* Where a point lies on the Z-curve, which p4est follows too: the bits of its two coordinates, interleaved */
+static PetscReal AbutTrianglesCurve_Private(AbutMesh mesh, const PetscReal x[2])
 {
-  DM          distributed;
+  const PetscReal size  = PetscMax(mesh->upper[0] - mesh->lower[0], mesh->upper[1] - mesh->lower[1]),
+                  steps = (PetscReal)(1 << ABUT_CURVE_BITS);
+  PetscReal s[2], at = 0.;
+
+  for (PetscInt d = 0; d < 2; ++d) s[d] = PetscMin(PetscFloorReal((x[d] - mesh->lower[d]) / size * steps), steps - 1.);
+  for (PetscInt bit = ABUT_CURVE_BITS - 1; bit >= 0; --bit)
+    at = 4. * at + 2. * (((PetscInt)s[1] >> bit) & 1) + (((PetscInt)s[0] >> bit) & 1);
+  return at;
+}
+
+/* How many of n ascending numbers lie below a bound */
+static PetscInt AbutTrianglesBelow_Private(PetscInt n, const PetscReal at[], PetscReal bound)
+{
+  PetscInt low = 0, high = n;
+
+  while (low < high) {
+    const PetscInt middle = (low + high) / 2;
+
+    if (at[middle] < bound) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}
+
+/* Cuts the curve into pieces of equally many cells, whose bounds are found by bisection, all at once: count[r] of the n local cells, which
+   ascend along the curve, go to rank r */
+static PetscErrorCode AbutTrianglesCut_Private(MPI_Comm comm, PetscInt n, const PetscReal at[], PetscInt count[])
+{
   PetscMPIInt size;
+  PetscInt    ncells, *below, *sum;
+  PetscReal  *low, *high;
 
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)*dm), &size));
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCallMPI(MPI_Allreduce(&n, &ncells, 1, MPIU_INT, MPI_SUM, comm));
+  PetscCall(PetscCalloc4(size, &below, size, &sum, size, &low, size, &high));
+  for (PetscMPIInt r = 0; r < size; ++r) high[r] = PetscPowReal(4., ABUT_CURVE_BITS);
+  for (PetscInt bit = 0; bit <= 2 * ABUT_CURVE_BITS; ++bit) {
+    for (PetscMPIInt r = 0; r < size; ++r) below[r] = AbutTrianglesBelow_Private(n, at, PetscFloorReal(0.5 * (low[r] + high[r])));
+    PetscCallMPI(MPI_Allreduce(below, sum, size, MPIU_INT, MPI_SUM, comm));
+    for (PetscMPIInt r = 0; r < size; ++r) {
+      const PetscReal middle = PetscFloorReal(0.5 * (low[r] + high[r]));
+
+      if (low[r] >= high[r]) continue;
+      if (sum[r] >= (PetscReal)ncells * (r + 1) / size) high[r] = middle; /* rank r has the cells below its bound */
+      else low[r] = middle + 1.;
+    }
+  }
+  for (PetscMPIInt r = 0; r < size; ++r) count[r] = AbutTrianglesBelow_Private(n, at, high[r]);
+  for (PetscMPIInt r = size - 1; r > 0; --r) count[r] -= count[r - 1];
+  PetscCall(PetscFree4(below, sum, low, high));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Graph partitioners draw lots: two runs would not agree to the last bit. The curve does not depend on where the cells were before. */
+static PetscErrorCode AbutTrianglesDistribute_Private(AbutMesh mesh, DM *dm)
+{
+  MPI_Comm         comm = PetscObjectComm((PetscObject)mesh);
+  DM               distributed;
+  PetscPartitioner part;
+  PetscMPIInt      size;
+  PetscInt         cStart, cEnd, *cell, *count;
+  PetscReal       *at;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
   if (size == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(DMPlexGetHeightStratum(*dm, 0, &cStart, &cEnd));
+  PetscCall(PetscMalloc3(cEnd - cStart, &at, cEnd - cStart, &cell, size, &count));
+  for (PetscInt c = cStart; c < cEnd; ++c) {
+    PetscReal center[2];
+
+    PetscCall(DMPlexComputeCellGeometryFVM(*dm, c, NULL, center, NULL));
+    at[c - cStart]   = AbutTrianglesCurve_Private(mesh, center);
+    cell[c - cStart] = c - cStart;
+  }
+  PetscCall(PetscSortRealWithArrayInt(cEnd - cStart, at, cell));
+  PetscCall(AbutTrianglesCut_Private(comm, cEnd - cStart, at, count));
+  PetscCall(PetscPartitionerCreate(comm, &part));
+  PetscCall(PetscPartitionerSetType(part, PETSCPARTITIONERSHELL));
+  PetscCall(PetscPartitionerShellSetPartition(part, size, count, cell));
+  PetscCall(DMPlexSetPartitioner(*dm, part));
+  PetscCall(PetscPartitionerDestroy(&part));
+  PetscCall(PetscFree3(at, cell, count));
   PetscCall(DMPlexDistribute(*dm, 0, NULL, &distributed));
   if (!distributed) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DMDestroy(dm));
@@ -42,7 +123,7 @@ static PetscErrorCode AbutMeshCreate_Triangles_DM(AbutMesh mesh, DM *dm)
   }
   PetscCall(DMPlexCreateFromCellListPetsc(PetscObjectComm((PetscObject)mesh), 2, nc, nv, 3, PETSC_TRUE, cell, 2, xy, dm));
   PetscCall(PetscFree2(cell, xy));
-  PetscCall(AbutTrianglesDistribute_Private(dm));
+  PetscCall(AbutTrianglesDistribute_Private(mesh, dm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -65,14 +146,15 @@ static PetscErrorCode AbutMeshRefine_Triangles(AbutMesh mesh, const PetscBool ma
   PetscCall(DMPlexTransformApply(transform, mesh->dm, dm));
   PetscCall(DMPlexTransformDestroy(&transform));
   PetscCall(DMLabelDestroy(&active));
-  PetscCall(AbutTrianglesDistribute_Private(dm));
+  PetscCall(AbutTrianglesDistribute_Private(mesh, dm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Two bisections halve the sides: the level counts how often the area of a first triangle was quartered, rounded up */
 static PetscErrorCode AbutMeshGetLevels_Triangles(AbutMesh mesh, PetscInt level[])
 {
-  const PetscReal first = 0.5 * (mesh->upper[0] - mesh->lower[0]) * (mesh->upper[1] - mesh->lower[1]) / ((PetscReal)mesh->cells[0] * mesh->cells[1]);
+  const PetscReal first = 0.5 * (mesh->upper[0] - mesh->lower[0]) * (mesh->upper[1] - mesh->lower[1]) /
+                          ((PetscReal)mesh->cells[0] * mesh->cells[1]);
   const PetscReal xi[2] = {1. / 3., 1. / 3.};
   PetscReal       x[2], N[3], G[6], det;
 

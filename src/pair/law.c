@@ -34,6 +34,40 @@ PetscErrorCode AbutPairGetGap(AbutPair pair, const PetscReal x[2], PetscReal *ga
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+#define ABUT_SAMPLES 32
+
+/*@
+   AbutPairCheck - Ends the run if the gap is not a finite number on the first side; needs no meshes yet
+
+   Collective
+
+   Input Parameter:
+.  pair - the pair, its keys read
+
+   Level: developer
+
+   Note:
+   Looks at some points of the side.
+
+.seealso: `AbutPairSetUp()`, `AbutBodyCheck()`
+@*/
+PetscErrorCode AbutPairCheck(AbutPair pair)
+{
+  AbutMesh  mesh;
+  PetscReal ends[4], normal[2], gap;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(pair, ABUTPAIR_CLASSID, 1);
+  PetscCall(AbutBodyGetMesh(pair->body[0], &mesh));
+  PetscCall(AbutMeshGetSideEnds(mesh, pair->side[0], ends, normal));
+  for (PetscInt i = 0; i < ABUT_SAMPLES; ++i) {
+    const PetscReal z = i / (ABUT_SAMPLES - 1.), x[2] = {(1. - z) * ends[0] + z * ends[2], (1. - z) * ends[1] + z * ends[3]};
+
+    PetscCall(AbutPairGetGap(pair, x, &gap));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@C
    AbutPairComputePressure - Nodal pressures of the penalty law, p = max(0, u_n1 + u_n2 - f)/theta, for given traces: eqs. (15), (20) of the paper
 

@@ -53,24 +53,30 @@ static void AbutPairChoosePressureSide_Private(AbutPair pair)
   pair->which = count[1] > count[0];
 }
 
-/* The dual functions psi_i = sum_j A[i][j] phi_j of one element on its overlap [l,r] (in [0,1]) with the other side, biorthogonal there:
-   A = diag(D) M^-1. Beside a node that carries no pressure the other node's function is 1, so that constants stay in the space. */
-static void AbutPairDual_Private(PetscReal l, PetscReal r, const PetscBool carries[2], PetscReal A[2][2])
+/* The dual functions psi_i = sum_j A[i][j] phi_j of one element on its overlap with the other side, biorthogonal there: A = diag(D) M^-1;
+   z[j] holds the hat function phi_j at the two ends of the overlap, of length f. Beside a node that carries no pressure the other node's
+   function is 1, so that constants stay in the space. On a small overlap the dual functions are wild: the largest eigenvalue of D M^-1 is
+   det D/det M, 3 on a full element; beyond 100 the nearer node carries alone. */
+static void AbutPairDual_Private(const PetscReal z[2][2], const PetscBool carries[2], PetscReal A[2][2])
 {
-  const PetscReal m0 = r - l, m1 = 0.5 * (r * r - l * l), m2 = (r * r * r - l * l * l) / 3.; /* moments of 1, z, z^2 */
-  const PetscReal D[2] = {m0 - m1, m1}, M[3] = {m0 - 2. * m1 + m2, m1 - m2, m2}, det = M[0] * M[2] - M[1] * M[1];
+  const PetscReal sum[2] = {z[0][0] + z[0][1], z[1][0] + z[1][1]}, f2 = PetscSqr(z[1][1] - z[1][0]); /* D_i = f sum_i/2, det M = f^4/12 */
+  const PetscReal cross = 2. * (z[0][0] * z[1][0] + z[0][1] * z[1][1]) + z[0][0] * z[1][1] + z[0][1] * z[1][0];
+  const PetscBool both = (PetscBool)(carries[0] && carries[1]), small = (PetscBool)(3. * sum[0] * sum[1] > 100. * f2);
 
-  for (PetscInt i = 0; i < 2; ++i)
-    for (PetscInt j = 0; j < 2; ++j) A[i][j] = carries[i] ? 1. : 0.;
-  if (!carries[0] || !carries[1]) return;
-  A[0][0] = D[0] * M[2] / det;
-  A[0][1] = -D[0] * M[1] / det;
-  A[1][0] = -D[1] * M[1] / det;
-  A[1][1] = D[1] * M[0] / det;
+  for (PetscInt i = 0; i < 2; ++i) {
+    const PetscInt  k  = !i;
+    const PetscBool in = (PetscBool)(carries[i] && !(both && small && (i ? sum[1] <= sum[0] : sum[0] < sum[1])));
+
+    A[i][0] = A[i][1] = in ? 1. : 0.;
+    if (!both || small) continue;
+    A[i][i] = 2. * sum[i] * (z[k][0] * z[k][0] + z[k][0] * z[k][1] + z[k][1] * z[k][1]) / f2;
+    A[i][k] = -sum[i] * cross / f2;
+  }
 }
 
 /* Integrals over one piece [from,to] (along the side) of the elements e of the pressure side and k of the other */
-static PetscErrorCode AbutPairSegment_Private(AbutPair pair, PetscReal *const s[2], const PetscReal tangent[2], PetscInt e, PetscInt k, const PetscReal A[2][2], PetscReal from, PetscReal to)
+static PetscErrorCode AbutPairSegment_Private(AbutPair pair, PetscReal *const s[2], const PetscReal tangent[2], PetscInt e, PetscInt k,
+                                              const PetscReal A[2][2], PetscReal from, PetscReal to)
 {
   static const PetscReal z[4] = {-0.86113631159405258, -0.33998104358485626, 0.33998104358485626, 0.86113631159405258};
   static const PetscReal w[4] = {0.34785484513745386, 0.65214515486254614, 0.65214515486254614, 0.34785484513745386};
@@ -118,11 +124,12 @@ PetscErrorCode AbutPairMortar_Private(AbutPair pair)
   k    = o->n - 2;
   for (PetscInt e = 0; e + 1 < m->n; ++e) {
     const PetscReal h = s[0][e + 1] - s[0][e], from = PetscMax(s[0][e], low), to = PetscMin(s[0][e + 1], high);
+    const PetscReal hats[2][2] = {{(s[0][e + 1] - from) / h, (s[0][e + 1] - to) / h}, {(from - s[0][e]) / h, (to - s[0][e]) / h}};
     const PetscBool carries[2] = {(PetscBool)!m->fixed[e], (PetscBool)!m->fixed[e + 1]};
     PetscReal       A[2][2];
 
     if (to - from < 1e-9 * h) continue;
-    AbutPairDual_Private((from - s[0][e]) / h, (to - s[0][e]) / h, carries, A);
+    AbutPairDual_Private(hats, carries, A);
     while (k > 0 && s[1][k] <= from + 1e-12 * h) --k;
     for (PetscInt j = k; j >= 0 && s[1][j + 1] < to; --j) { /* element j of the other side covers [s[1][j+1], s[1][j]] */
       const PetscReal a = PetscMax(from, s[1][j + 1]), b = PetscMin(to, s[1][j]);

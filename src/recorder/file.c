@@ -1,21 +1,31 @@
 /* Files that are never half written: rank 0 writes PATH.part and renames it to PATH */
 #include <abut/private/recorderimpl.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #define ABUT_FILE_ISFOLDER 1
-#define ABUT_FILE_NOFOLDER 2
-#define ABUT_FILE_NOACCESS 3
+#define ABUT_FILE_NOTFILE  2
+#define ABUT_FILE_NOFOLDER 3
+#define ABUT_FILE_NOACCESS 4
 
+/* Renaming would put a file in the place of a device; and only making a file tells whether one can be made */
 static int PathProblem(const char path[], const char folder[])
 {
   struct stat s;
+  char        aside[PETSC_MAX_PATH_LEN];
+  int         file;
 
   if (!stat(path, &s) && S_ISDIR(s.st_mode)) return ABUT_FILE_ISFOLDER;
+  if (!lstat(path, &s) && !S_ISREG(s.st_mode)) return ABUT_FILE_NOTFILE;
   if (stat(folder, &s) || !S_ISDIR(s.st_mode)) return ABUT_FILE_NOFOLDER;
-  if (access(folder, W_OK | X_OK)) return ABUT_FILE_NOACCESS;
+  snprintf(aside, sizeof(aside), "%s.part", path);
+  file = open(aside, O_CREAT | O_WRONLY, 0666);
+  if (file < 0) return ABUT_FILE_NOACCESS;
+  (void)close(file);
+  (void)remove(aside);
   return 0;
 }
 
@@ -36,6 +46,7 @@ PetscErrorCode AbutFileCheckPath_Private(MPI_Comm comm, const char key[], const 
   if (rank == 0) problem = PathProblem(path, folder);
   PetscCallMPI(MPI_Bcast(&problem, 1, MPI_INT, 0, comm));
   AbutCheckInput(problem != ABUT_FILE_ISFOLDER, comm, "%s: '%s' is a folder; name a file in it", key, path);
+  AbutCheckInput(problem != ABUT_FILE_NOTFILE, comm, "%s: '%s' is a device or a link, which a file would replace; name a file", key, path);
   AbutCheckInput(problem != ABUT_FILE_NOFOLDER, comm, "%s: there is no folder '%s' for '%s'; make it first", key, folder, path);
   AbutCheckInput(problem != ABUT_FILE_NOACCESS, comm, "%s: the folder '%s' of '%s' is not writable; name another", key, folder, path);
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -136,6 +136,7 @@ PetscErrorCode AbutSceneSetFromOptions(AbutScene scene)
   PetscCall(PetscOptionsString("-estimator_type", "Type of the estimator", NULL, type, type, sizeof(type), &estimates));
   PetscCall(AbutScenePlugins_Private(scene, PetscOptionsObject));
   PetscOptionsEnd();
+  AbutCheckInput(scene->eps_u > 0., comm, "scene_eps_u: %g; give a positive number, for example 0.0015", (double)scene->eps_u);
   AbutCheckInput(nbodies > 0, comm, "scene_bodies: missing; give the names of the bodies, or a scene file, for example examples/layers/layers.yml");
   PetscCall(AbutSceneCheckDistinct_Private(scene, nbodies, bodies, npairs, pairs));
   PetscCall(AbutSceneCheckDistinct_Private(scene, nbodies, bodies, nprobes, probes));

@@ -26,6 +26,22 @@ static PetscErrorCode AbutSceneUniformUnknowns_Private(AbutMesh mesh, PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A body that only moves has forces and energies of round-off, and of the linear solver's tolerance: they are compared with at least a thousandth of E times
+   the largest displacement, and this times that displacement */
+static PetscErrorCode AbutSceneScales_Private(AbutBody body, PetscReal *force, PetscReal *energy)
+{
+  PetscReal young, poisson, umax;
+  Vec       u;
+
+  PetscFunctionBegin;
+  PetscCall(AbutBodyGetMaterial(body, &young, &poisson));
+  PetscCall(AbutBodyGetSolution(body, &u));
+  PetscCall(VecNorm(u, NORM_INFINITY, &umax));
+  *force  = 1e-3 * young * umax;
+  *energy = *force * umax;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode AbutSceneRecordBodies_Private(AbutScene scene, PetscReal *energy_strain, PetscBool *consistent)
 {
   AbutRecorder rec      = scene->recorder;
@@ -38,7 +54,7 @@ static PetscErrorCode AbutSceneRecordBodies_Private(AbutScene scene, PetscReal *
     AbutMesh         mesh;
     AbutMeshMeasures m;
     PetscInt         n, cells, solves, its;
-    PetscReal        energy, work, reaction[2], applied[2], residual, uniform = 0.;
+    PetscReal        energy, work, reaction[2], applied[2], residual, uniform = 0., force = 0., floor = 0.;
 
     PetscCall(AbutBodyGetName(scene->body[b], &name));
     PetscCall(AbutBodyGetMesh(scene->body[b], &mesh));
@@ -65,12 +81,10 @@ static PetscErrorCode AbutSceneRecordBodies_Private(AbutScene scene, PetscReal *
     done += work;
     strain += energy;
     linear = PetscMax(linear, residual);
-    for (PetscInt d = 0; d < 2; ++d) {
-      const PetscReal scale = PetscMax(PetscAbsReal(reaction[0]), PetscAbsReal(reaction[1]));
-
-      if (scale > 0.) balance = PetscMax(balance, PetscAbsReal(reaction[d] + applied[d]) / scale);
-    }
-    if (energy > 0.) identity = PetscMax(identity, PetscAbsReal(2. * energy - work) / (2. * energy));
+    PetscCall(AbutSceneScales_Private(scene->body[b], &force, &floor));
+    for (PetscInt d = 0; d < 2; ++d) force = PetscMax(force, PetscAbsReal(reaction[d]));
+    for (PetscInt d = 0; d < 2 && force > 0.; ++d) balance = PetscMax(balance, PetscAbsReal(reaction[d] + applied[d]) / force);
+    if (floor > 0.) identity = PetscMax(identity, PetscAbsReal(2. * energy - work) / PetscMax(2. * energy, floor));
   }
   PetscCall(AbutRecorderSetInt(rec, "unknowns", unknowns));
   PetscCall(AbutRecorderSetReal(rec, "energy.strain", strain));

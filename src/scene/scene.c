@@ -32,7 +32,8 @@ PetscErrorCode AbutSceneCreate(MPI_Comm comm, AbutScene *scene)
 }
 
 /*@
-   AbutSceneSetUp - Sets up what the scene made: meshes, operators, pairs; an option that nobody has read by now ends the run
+   AbutSceneSetUp - Sets up what the scene made: meshes, operators, pairs; an option that nobody has read by now, a body that nothing holds, a gap or a
+   condition that is not finite end the run before that
 
    Collective
 
@@ -53,6 +54,8 @@ PetscErrorCode AbutSceneSetUp(AbutScene scene)
   if (scene->setupcalled) PetscFunctionReturn(PETSC_SUCCESS);
   scene->setupcalled = PETSC_TRUE;
   PetscCall(AbutOptionsCheckAllRead(PetscObjectComm((PetscObject)scene), PETSC_FALSE));
+  for (PetscInt i = 0; i < scene->nbodies; ++i) PetscCall(AbutBodyCheck(scene->body[i]));
+  for (PetscInt i = 0; i < scene->npairs; ++i) PetscCall(AbutPairCheck(scene->pair[i]));
   PetscCall(AbutInterfaceSetUp(scene->iface));
   PetscCall(AbutSceneClock_Private(scene, ABUT_TIME_SETUP));
   PetscCall(PetscObjectViewFromOptions((PetscObject)scene, NULL, "-scene_view"));

@@ -1,4 +1,5 @@
 #include <abut/private/sceneimpl.h>
+#include <abut/private/sysimpl.h>
 
 /* The SNES of the scene: ddneumann by default, our tolerances, the user's options over them */
 
@@ -11,6 +12,21 @@ static PetscErrorCode AbutSceneDefault_Private(const char name[], const char val
   PetscCall(PetscOptionsHasName(NULL, NULL, name, &has));
   *set = (PetscBool)!has;
   if (*set) PetscCall(PetscOptionsSetValue(NULL, name, value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Types of PETSc that work on parts of a mesh, or are made in C, or iterate without a test */
+static const char *const AbutUnfitTypes[] = {SNESNGS, SNESCOMPOSITE, SNESSHELL, SNESPATCH, SNESASPIN, SNESNASM, SNESMS, SNESKSPONLY, SNESKSPTRANSPOSEONLY, NULL};
+
+static PetscErrorCode AbutSceneReadSolver_Private(AbutScene scene)
+{
+  MPI_Comm comm = PetscObjectComm((PetscObject)scene);
+  PetscInt max_it;
+
+  PetscFunctionBegin;
+  AbutCallOptions(comm, "snes_*", SNESSetFromOptions(scene->snes));
+  PetscCall(SNESGetTolerances(scene->snes, NULL, NULL, NULL, &max_it, NULL));
+  AbutCheckInput(max_it >= 0, comm, "snes_max_it: %" PetscInt_FMT "; give a number from 0 up, for example 10000", max_it);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -31,7 +47,7 @@ static PetscErrorCode AbutSceneAndersonOptions_Private(AbutScene scene)
     PetscCall(PetscSNPrintf(value, sizeof(value), "%.16g", (double)gamma));
   }
   PetscCall(AbutSceneDefault_Private(name, value, &set));
-  PetscCall(SNESSetFromOptions(scene->snes));
+  PetscCall(AbutSceneReadSolver_Private(scene));
   if (set) PetscCall(PetscOptionsClearValue(NULL, name));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -41,7 +57,7 @@ PetscErrorCode AbutSceneSolverFromOptions_Private(AbutScene scene)
   MPI_Comm  comm      = PetscObjectComm((PetscObject)scene);
   char      type[256] = SNESDDNEUMANN;
   PetscReal gamma;
-  PetscBool hasgamma;
+  PetscBool hasgamma, unfit = PETSC_FALSE;
   PetscErrorCode (*create)(SNES);
 
   PetscFunctionBegin;
@@ -51,19 +67,20 @@ PetscErrorCode AbutSceneSolverFromOptions_Private(AbutScene scene)
   PetscCall(PetscOptionsGetString(NULL, NULL, "-snes_type", type, sizeof(type), NULL));
   PetscCall(PetscFunctionListFind(SNESList, type, &create));
   AbutCheckInput(create, comm, "snes_type: there is no \"%s\"; the paper's loop is ddneumann, PETSc's are for example anderson, ngmres, qn", type);
+  for (PetscInt i = 0; AbutUnfitTypes[i] && !unfit; ++i) PetscCall(PetscStrcmp(type, AbutUnfitTypes[i], &unfit));
+  AbutCheckInput(!unfit, comm, "snes_type: %s does not suit the traces of a contact; give ddneumann, anderson, ngmres, qn, nrichardson or ncg", type);
   AbutCheckInput(!scene->interleave || !strcmp(type, SNESDDNEUMANN), comm, "scene_interleave: needs -snes_type ddneumann; %s keeps a history that a new mesh makes void", type);
   PetscObjectOptionsBegin((PetscObject)scene);
   PetscCall(AbutOptionsEnum(PetscOptionsObject, "-snes_ddneumann_start", "First trace", AbutStarts, &scene->start, NULL));
   PetscCall(AbutOptionsReal(PetscOptionsObject, "-snes_ddneumann_gamma", "Relaxation of a sweep, whatever accelerates it", &gamma, &hasgamma));
   PetscOptionsEnd();
-  AbutCheckInput(!hasgamma || gamma > 0., comm, "snes_ddneumann_gamma: %g; give a positive number, or leave it out for 2/(2+C/theta)", (double)gamma);
+  AbutCheckInput(!hasgamma || gamma >= 0., comm, "snes_ddneumann_gamma: %g; give a positive number, or 0 for 2/(2+C/theta)", (double)gamma);
   if (hasgamma) PetscCall(AbutInterfaceSetGamma(scene->iface, gamma));
   PetscCall(SNESSetType(scene->snes, SNESDDNEUMANN));
   if (!strcmp(type, SNESANDERSON)) PetscCall(AbutSceneAndersonOptions_Private(scene));
-  else PetscCall(SNESSetFromOptions(scene->snes));
-  if (scene->interleave) { /* a cycle is one bare iteration; the scene itself tests the change of the traces */
-    PetscCall(SNESSetTolerances(scene->snes, 0., PETSC_DEFAULT, 0., 1, PETSC_DEFAULT));
-    PetscCall(SNESSetNormSchedule(scene->snes, SNES_NORM_NONE));
-  }
+  else PetscCall(AbutSceneReadSolver_Private(scene));
+  /* interleaved, a cycle is one bare iteration, and the scene itself tests the change of the traces */
+  if (scene->interleave) PetscCall(SNESSetTolerances(scene->snes, 0., PETSC_DEFAULT, 0., 1, PETSC_DEFAULT));
+  PetscCall(SNESSetNormSchedule(scene->snes, scene->interleave ? SNES_NORM_NONE : SNES_NORM_ALWAYS)); /* without norms there would be no stop test */
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,21 +1,29 @@
 #include <abutsys.h>
 #include <abut/private/sysimpl.h>
+#include <ctype.h>
 
-/* Where the message of a bad input goes: one line, once, from the first rank. Everything else is a defect and keeps PETSc's traceback. */
+/* Where the message of a bad input goes, and that of a file that could not be written: one line, once, from the first rank. Everything else is a defect and
+   keeps PETSc's traceback. */
 static PetscErrorCode AbutErrorHandler_Private(MPI_Comm comm, int line, const char *fun, const char *file, PetscErrorCode n, PetscErrorType p, const char *mess, void *ctx)
 {
   PetscMPIInt rank = 0;
 
-  if (n != PETSC_ERR_USER_INPUT) return PetscTraceBackErrorHandler(comm, line, fun, file, n, p, mess, ctx);
+  if (n != PETSC_ERR_USER_INPUT && n != PETSC_ERR_FILE_WRITE) return PetscTraceBackErrorHandler(comm, line, fun, file, n, p, mess, ctx);
   if (p != PETSC_ERROR_INITIAL) return n;
   if (comm != PETSC_COMM_SELF) MPI_Comm_rank(comm, &rank);
   if (!rank) fprintf(stderr, "abut: %s\n", mess);
   return n;
 }
 
-/* PETSc's own reader would end a bad file with a traceback: this one keeps quiet, and the caller says what is wrong in one line */
-static PetscErrorCode AbutErrorQuiet_Private(PETSC_UNUSED MPI_Comm comm, PETSC_UNUSED int line, PETSC_UNUSED const char *fun, PETSC_UNUSED const char *file, PetscErrorCode n, PETSC_UNUSED PetscErrorType p, PETSC_UNUSED const char *mess, PETSC_UNUSED void *ctx)
+/* Instead of a traceback, the first message of PETSc, without line breaks, in a text of ABUT_MESSAGE characters */
+PetscErrorCode AbutErrorKeep_Private(PETSC_UNUSED MPI_Comm comm, PETSC_UNUSED int line, PETSC_UNUSED const char *fun, PETSC_UNUSED const char *file, PetscErrorCode n, PetscErrorType p, const char *mess, void *ctx)
 {
+  char *said = (char *)ctx;
+
+  if (p != PETSC_ERROR_INITIAL) return n;
+  snprintf(said, ABUT_MESSAGE, "%s", mess);
+  for (char *c = said; *c; ++c)
+    if (*c == '\n' || *c == '\r') *c = ' ';
   return n;
 }
 
@@ -23,11 +31,12 @@ static PetscErrorCode AbutInsertSceneFile_Private(const char file[])
 {
   PetscBool      exists;
   PetscErrorCode ierr;
+  char           said[ABUT_MESSAGE]; /* of no use: it names a line of PETSc's */
 
   PetscFunctionBegin;
   PetscCall(PetscTestFile(file, 'r', &exists));
   AbutCheckInput(exists, PETSC_COMM_WORLD, "scene file \"%s\": no such file, or not readable; give the path of a scene, for example examples/layers/layers.yml", file);
-  PetscCall(PetscPushErrorHandler(AbutErrorQuiet_Private, NULL));
+  PetscCall(PetscPushErrorHandler(AbutErrorKeep_Private, said));
   ierr = PetscOptionsInsertFile(PETSC_COMM_WORLD, NULL, file, PETSC_TRUE);
   PetscCall(PetscPopErrorHandler());
   AbutCheckInput(!ierr, PETSC_COMM_WORLD, "scene file \"%s\": cannot be read as %s; it may be cut off: compare it with examples/layers/layers.yml", file,
@@ -36,7 +45,7 @@ static PetscErrorCode AbutInsertSceneFile_Private(const char file[])
 }
 
 /* Scene files first, then the command line, wherever on it the file stands: the command line wins */
-static PetscErrorCode AbutInsertScene_Private(int nfiles, char *files[])
+static PetscErrorCode AbutInsertScene_Private(int nfiles, const char *const files[])
 {
   PetscInt n;
   char   **names, **values;
@@ -64,6 +73,20 @@ static PetscErrorCode AbutInsertScene_Private(int nfiles, char *files[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A negative number is no key, as in PETSc */
+static int AbutIsKey_Private(const char word[])
+{
+  return word[0] == '-' && (isalpha((unsigned char)word[1]) || word[1] == '_' || word[1] == '-');
+}
+
+/* A word that is neither a key nor follows one: PETSc would skip it */
+static const char *AbutStrayWord_Private(int n, char *const words[])
+{
+  for (int i = 1; i < n; ++i)
+    if (!AbutIsKey_Private(words[i]) && (i == 1 || !AbutIsKey_Private(words[i - 1]))) return words[i];
+  return NULL;
+}
+
 /*@C
    AbutInitialize - Starts MPI, PETSc and Abut, and reads the scene files named on the command line
 
@@ -77,25 +100,28 @@ static PetscErrorCode AbutInsertScene_Private(int nfiles, char *files[])
    Level: beginner
 
    Notes:
-   Options on the command line win over those of the files. A bad input is reported in one line on standard error.
+   Options on the command line win over those of the files. A bad input is reported in one line on standard error, and so is a word that belongs to no
+   option: PETSc would skip it.
 
 .seealso: `AbutFinalize()`, `AbutSceneCreate()`
 @*/
 PetscErrorCode AbutInitialize(int *argc, char ***args, const char help[])
 {
-  char **files = (char **)calloc((size_t)*argc + 1, sizeof(char *)), **rest = (char **)calloc((size_t)*argc + 1, sizeof(char *));
-  int    nfiles = 0, nrest = 0;
+  const char **files = (const char **)calloc((size_t)*argc + 1, sizeof(char *));
+  char       **rest  = (char **)calloc((size_t)*argc + 1, sizeof(char *));
+  const char  *stray;
+  int          nfiles = 0, nrest = 0;
 
   for (int i = 0; i < *argc; ++i) {
-    const int isfile = i && i + 1 < *argc && !strcmp((*args)[i], "-options_file");
-
-    if (isfile) files[nfiles++] = (*args)[++i];
+    if (i && !strcmp((*args)[i], "-options_file")) files[nfiles++] = i + 1 < *argc ? (*args)[++i] : "";
     else if (i == 1 && (*args)[i][0] != '-') files[nfiles++] = (*args)[i];
     else rest[nrest++] = (*args)[i];
   }
+  stray = AbutStrayWord_Private(nrest, rest);
   PetscCall(PetscInitialize(&nrest, &rest, NULL, help));
   PetscFunctionBegin;
   PetscCall(PetscPushErrorHandler(AbutErrorHandler_Private, NULL));
+  AbutCheckInput(!stray, PETSC_COMM_WORLD, "\"%s\" belongs to no key; only the first word may be a scene file, further ones follow -options_file, and keys begin with a dash", stray);
   PetscCall(AbutInsertScene_Private(nfiles, files));
   free(files); /* PETSc keeps pointing into rest, as it does into argv: it lives as long as the program */
   PetscFunctionReturn(PETSC_SUCCESS);

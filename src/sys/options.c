@@ -55,8 +55,8 @@ static PetscErrorCode AbutOptionsNumbers_Private(AbutOptionItems PetscOptionsObj
 
     while (*end == ' ') ++end;
     AbutCheckInput(end != at && *end == (last ? '\0' : ',') && PetscIsNormalReal(v ? v : 1.) && (!integer || (v == (double)(PetscInt)v)), PetscOptionsObject->comm,
-                   "%s: \"%s\" is not %s; give %s%s", key, given, n > 1 ? "a list of the right kind" : (integer ? "a whole number" : "a number"),
-                   n > 1 ? "as many numbers as wanted, separated by commas: " : "", n == 1 ? (integer ? "for example 8" : "for example 2.1e5") : text);
+                   "%s: \"%s\" is not %" PetscInt_FMT " %snumber%s; give %s", key, given, n, integer ? "whole " : "", n > 1 ? "s separated by commas" : "",
+                   n > 1 ? text : (integer ? "for example 8" : "for example 2.1e5"));
     value[i] = v;
     at       = end + 1;
   }
@@ -250,7 +250,7 @@ PetscErrorCode AbutOptionsBool(AbutOptionItems PetscOptionsObject, const char op
 static PetscBool AbutOptionsIsLate_Private(const char name[])
 {
   static const char *const start[] = {"log_", "malloc", "objects_dump", "options_", "memory_", "on_error", "start_in_", "fp_trap", "help", "version", "info", "skip_petscrc", "checkstack", "get_total", NULL};
-  static const char *const inside[] = {"mat_mumps_", "_view", "_monitor", "pc_hypre_", "_converged_reason", NULL};
+  static const char *const inside[] = {"mat_mumps_", "_view", "pc_hypre_", "_converged_reason", NULL};
 
   for (PetscInt i = 0; start[i]; ++i)
     if (!strncmp(name, start[i], strlen(start[i]))) return PETSC_TRUE;

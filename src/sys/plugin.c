@@ -124,12 +124,14 @@ static PetscErrorCode AbutPluginTestFile_Private(MPI_Comm comm, const char path[
 @*/
 PetscErrorCode AbutPluginAppend(MPI_Comm comm, const char path[])
 {
+  char      file[PETSC_MAX_PATH_LEN];
   PetscBool found;
 
   PetscFunctionBegin;
-  PetscCall(AbutPluginTestFile_Private(comm, path, &found));
+  PetscCall(PetscSNPrintf(file, sizeof(file), "%s%s", strchr(path, '/') ? "" : "./", path)); /* without a slash the system would search its own folders */
+  PetscCall(AbutPluginTestFile_Private(comm, file, &found));
   AbutCheckInput(found, comm, "plugin: no file \"%s\"", path);
-  PetscCall(AbutPluginOpen_Private(comm, path));
+  PetscCall(AbutPluginOpen_Private(comm, file));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

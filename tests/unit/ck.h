@@ -36,6 +36,6 @@ static inline int CkRun(Suite *suite)
   srunner_run_all(runner, CK_NORMAL);
   failed = srunner_ntests_failed(runner);
   srunner_free(runner);
-  MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MAX, PETSC_COMM_WORLD);
+  if (MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MAX, PETSC_COMM_WORLD)) failed = 1;
   return failed ? EXIT_FAILURE : EXIT_SUCCESS;
 }

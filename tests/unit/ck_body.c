@@ -23,8 +23,12 @@ static AbutBody Make(MPI_Comm comm, CkField *field, int which, AbutShape shape)
 /* Largest distance of the stresses at three points of every cell from the field's, over the largest stress */
 static PetscReal StressError(AbutBody body, const CkField *field)
 {
-  const PetscReal         xi[3][2] = {{0.1, 0.1}, {0.8, 0.1}, {0.2, 0.7}};
-  const AbutMeshTopology *t        = CkTopology(CkMeshOf(body));
+  const PetscReal xi[3][2] = {
+    {0.1, 0.1},
+    {0.8, 0.1},
+    {0.2, 0.7}
+  };
+  const AbutMeshTopology *t       = CkTopology(CkMeshOf(body));
   PetscReal               most[2] = {0., 0.}, x[2], det, u[2], s[2][3];
 
   for (PetscInt c = 0; c < t->ncells; ++c)
@@ -59,7 +63,8 @@ START_TEST(linear_displacements_are_exact_on_every_mesh)
     CkGiveAll(body, &linear, c[0], c[1], c[2], c[3]);
     CkOk(AbutBodySolve(body, NULL));
     ck_assert_double_lt(CkNodalError(body, &linear), 1e-12);
-    ck_assert_double_lt(StressError(body, &linear), _i % NMESHES == POINT ? 1e-10 : 1e-12); /* differences over cells a thousand times smaller */
+    ck_assert_double_lt(StressError(body, &linear),
+                        _i % NMESHES == POINT ? 1e-10 : 1e-12); /* differences over cells a thousand times smaller */
     CkOk(AbutBodyGetLinearResidual(body, &residual));
     ck_assert_double_lt(residual, 1e-12);
     CkOk(AbutBodyDestroy(&body));
@@ -91,8 +96,8 @@ END_TEST
 START_TEST(the_strain_energy_of_a_constant_strain_is_its_formula)
 {
   const PetscReal strain[3] = {2e-3, 4e-3, -0.75e-3}, x[2] = {0., 0.};
-  CkField         linear    = {.at = CkLinear};
-  AbutBody        body      = Make(PETSC_COMM_WORLD, &linear, SCATTERED, (AbutShape)_i);
+  CkField         linear = {.at = CkLinear};
+  AbutBody        body   = Make(PETSC_COMM_WORLD, &linear, SCATTERED, (AbutShape)_i);
   PetscReal       u[2], s[3], energy, work;
 
   CkGiveAll(body, &linear, "uu", "uu", "uu", "uu");
@@ -127,13 +132,19 @@ START_TEST(ranks_do_not_change_the_solution)
   ck_assert_int_eq(size[0], size[1]);
   ck_assert_double_eq_tol(norm[0], norm[1], 1e-10 * norm[1]);
   ck_assert_double_eq_tol(energy[0], energy[1], 1e-10 * energy[1]);
-  for (PetscInt i = 0; i < 7; ++i) ck_assert_double_eq_tol(value[0][i], value[1][i], 1e-10 * (i < 2 ? PetscAbsReal(value[1][0]) + PetscAbsReal(value[1][1]) : value[1][6]));
+  for (PetscInt i = 0; i < 7; ++i)
+    ck_assert_double_eq_tol(value[0][i], value[1][i],
+                            1e-10 * (i < 2 ? PetscAbsReal(value[1][0]) + PetscAbsReal(value[1][1]) : value[1][6]));
 }
 END_TEST
 
 START_TEST(where_cells_meet_the_stress_is_the_mean_over_them)
 {
-  const PetscReal         x[2] = {1., 0.25}, centers[2][2] = {{0.5, 0.5}, {1.5, 0.5}}, outside[2] = {2.01, 0.5};
+  const PetscReal x[2] =
+    {
+      1., 0.25
+  },
+                  centers[2][2] = {{0.5, 0.5}, {1.5, 0.5}}, outside[2] = {2.01, 0.5};
   CkField                 smooth = {.at = CkSmooth};
   AbutBody                body   = CkBodyOn(PETSC_COMM_WORLD, "body", &smooth, 0., 0., 2., 1., 2, 1, ABUT_QUAD);
   const AbutMeshTopology *t;
@@ -249,7 +260,7 @@ START_TEST(what_is_set_after_a_solve_holds_for_the_next)
     CkOk(AbutBodySolve(body, NULL));
     CkOk(AbutBodyGetPointValues(body, x, value));
     ck_assert_double_eq_tol(value[3], (k ? 2. : 1.) * CK_YOUNG / (1. - CK_POISSON * CK_POISSON) * 1e-3, 1e-11 * value[3]);
-    CkOk(AbutBodySetMaterial(body, 2. * CK_YOUNG, CK_POISSON));
+    if (!k) CkOk(AbutBodySetMaterial(body, 2. * CK_YOUNG, CK_POISSON));
   }
   g[0] = -3e-3;
   CkOk(AbutBodySetDisplacement(body, "top", 1, Constant, &g[0]));

@@ -52,7 +52,8 @@ START_TEST(the_boundary_is_one_closed_contour_with_the_body_on_the_left)
   ck_assert(b->contour[0] == 0 && b->contour[1] == b->n);
   ck_assert(b->x[0] == 1. && b->x[1] == 2.); /* begins at the lowest, leftmost corner */
   for (PetscInt i = 0; i < b->n; ++i) {
-    const PetscReal *p = b->x + 2 * i, *q = b->x + 2 * b->end[i], h = PetscAbsReal(p[0] - q[0]) + PetscAbsReal(p[1] - q[1]), *n = ck_normals[b->side[i]];
+    const PetscReal *p = b->x + 2 * i, *q = b->x + 2 * b->end[i], h = PetscAbsReal(p[0] - q[0]) + PetscAbsReal(p[1] - q[1]),
+                    *n = ck_normals[b->side[i]];
 
     ck_assert_int_eq(b->end[i], (i + 1) % b->n);
     ck_assert_double_eq_tol(q[0] - p[0], -n[1] * h, 1e-15);
@@ -86,8 +87,9 @@ START_TEST(reactions_are_the_moments_of_the_tractions_that_hold_the_body)
   CkOk(PetscCalloc1(2 * b->n, &force));
   CkLinear(&linear, b->x, u, s);
   for (PetscInt i = 0; i < b->n; ++i) {
-    const PetscReal *p = b->x + 2 * i, *q = b->x + 2 * b->end[i], h = PetscAbsReal(p[0] - q[0]) + PetscAbsReal(p[1] - q[1]), *n = ck_normals[b->side[i]];
-    const PetscReal  t[2] = {s[0] * n[0] + s[2] * n[1], s[2] * n[0] + s[1] * n[1]};
+    const PetscReal *p = b->x + 2 * i, *q = b->x + 2 * b->end[i], h = PetscAbsReal(p[0] - q[0]) + PetscAbsReal(p[1] - q[1]),
+                    *n   = ck_normals[b->side[i]];
+    const PetscReal t[2] = {s[0] * n[0] + s[2] * n[1], s[2] * n[0] + s[1] * n[1]};
 
     for (PetscInt d = 0; d < 2; ++d) {
       force[2 * i + d] += 0.5 * h * t[d];
@@ -126,17 +128,23 @@ START_TEST(given_tractions_are_projected_and_balance_the_reactions_in_force_and_
   CkOk(AbutBodySetDisplacement(body, "bottom", 1, Zero, NULL));
   CkOk(AbutBodySetTraction(body, "top", 1, Square, NULL));
   CkOk(AbutBodySetTraction(body, "right", 0, Square, NULL)); /* 25 */
+  CkOk(AbutBodySetTraction(body, "right", 1, Square, NULL)); /* at the lower corner it meets a prescribed displacement */
   CkOk(AbutBodySetContact(body, 3));
   CkOk(AbutBodySolve(body, NULL));
   CkOk(AbutBodyGetBoundary(body, &b));
   for (PetscInt i = 0; i < b->n; ++i) {
-    const PetscReal *p = b->x + 2 * i, *q = b->x + 2 * b->end[i], h = PetscAbsReal(p[0] - q[0]) + PetscAbsReal(p[1] - q[1]), *t = b->traction + 4 * i;
+    const PetscReal *p = b->x + 2 * i, *q = b->x + 2 * b->end[i], h = PetscAbsReal(p[0] - q[0]) + PetscAbsReal(p[1] - q[1]),
+                    *t = b->traction + 4 * i;
 
     for (PetscInt k = 0; k < 2; ++k) {
       const PetscReal s = k ? 1. : 0., step = -h; /* the top runs from right to left */
 
       ck_assert_double_eq_tol(t[2 * k], b->side[i] == 1 ? 25. : 0., 1e-12);
-      ck_assert_double_eq_tol(t[2 * k + 1], b->side[i] == 3 ? p[0] * p[0] + 2. * p[0] * step * s + h * h * (s - 1. / 6.) : 0., 1e-11);
+      ck_assert_double_eq_tol(t[2 * k + 1],
+                              b->side[i] == 1   ? 25.
+                              : b->side[i] == 3 ? p[0] * p[0] + 2. * p[0] * step * s + h * h * (s - 1. / 6.)
+                                                : 0.,
+                              1e-11);
     }
     ck_assert_int_eq(b->condition[2 * i], b->side[i] == 0 ? ABUT_DISPLACEMENT : (b->side[i] == 3 ? ABUT_CONTACT : ABUT_TRACTION));
     ck_assert_int_eq(b->condition[2 * i + 1], b->side[i] == 2 ? ABUT_DISPLACEMENT : ABUT_TRACTION);
@@ -151,7 +159,8 @@ START_TEST(given_tractions_are_projected_and_balance_the_reactions_in_force_and_
   for (PetscInt k = 0; k < 3; ++k) ck_assert_double_eq_tol(sum[k], 0., 1e-12 * total * (k < 2 ? 1. : 5.));
   CkOk(AbutBodyGetReaction(body, reaction, applied));
   ck_assert_double_eq_tol(applied[0], 25., 1e-12 * total);
-  ck_assert_double_eq_tol(applied[1], (125. - 1.) / 3., 1e-12 * total);
+  ck_assert_double_eq_tol(applied[1], 25. + (125. - 1.) / 3., 1e-12 * total);
+  for (PetscInt d = 0; d < 2; ++d) ck_assert_double_eq_tol(reaction[d], -applied[d], 1e-12 * total);
   CkOk(AbutBoundaryDestroy(&b));
   CkOk(AbutBodyDestroy(&body));
 }
@@ -159,10 +168,17 @@ END_TEST
 
 START_TEST(a_side_is_an_ordered_list_of_nodes_with_outward_normals)
 {
-  const PetscReal from[4][2] = {{1., 3.}, {5., 2.}, {1., 2.}, {5., 3.}}, to[4][2] = {{1., 2.}, {5., 3.}, {5., 2.}, {1., 3.}};
-  CkField         linear = {.at = CkLinear};
-  AbutBody        body   = Make(&linear, _i % NMESHES, (AbutShape)(_i / NMESHES));
-  PetscInt        n      = 0;
+  const PetscReal from[4][2] =
+    {
+      {1., 3.},
+      {5., 2.},
+      {1., 2.},
+      {5., 3.}
+  },
+                  to[4][2] = {{1., 2.}, {5., 3.}, {5., 2.}, {1., 3.}};
+  CkField         linear   = {.at = CkLinear};
+  AbutBody        body     = Make(&linear, _i % NMESHES, (AbutShape)(_i / NMESHES));
+  PetscInt        n        = 0;
   const AbutSide *side;
 
   CkGiveAll(body, &linear, "uu", "uu", "uu", "uu");
@@ -173,7 +189,9 @@ START_TEST(a_side_is_an_ordered_list_of_nodes_with_outward_normals)
     ck_assert(side->x[2 * side->n - 2] == to[s][0] && side->x[2 * side->n - 1] == to[s][1]);
     for (PetscInt i = 0; i + 1 < side->n; ++i) {
       for (PetscInt d = 0; d < 2; ++d) ck_assert_double_eq_tol(side->normal[2 * i + d], ck_normals[s][d], 1e-15);
-      ck_assert_double_gt((side->x[2 * i + 2] - side->x[2 * i]) * -ck_normals[s][1] + (side->x[2 * i + 3] - side->x[2 * i + 1]) * ck_normals[s][0], 0.);
+      ck_assert_double_gt((side->x[2 * i + 2] - side->x[2 * i]) * -ck_normals[s][1] +
+                            (side->x[2 * i + 3] - side->x[2 * i + 1]) * ck_normals[s][0],
+                          0.);
     }
     n += side->n - 1;
   }
@@ -188,7 +206,7 @@ START_TEST(a_node_is_fixed_where_its_normal_displacement_is_prescribed_by_either
   static const struct {
     const char *conditions[4], *fixed[4];
   } cases[] = {
-    {{"u-", "--", "-u", "--"}, {"111", "000", "111", "000"}}, /* the layers scene: the symmetry plane does not fix the contact side's normal */
+    {{"u-", "--", "-u", "--"}, {"111", "000", "111", "000"}}, /* the layers scene: its symmetry plane fixes no normal of the top */
     {{"uu", "--", "--", "--"}, {"111", "000", "100", "001"}}, /* clamped on the left: fixed along both normals at its two corners */
     {{"--", "-u", "uu", "--"}, {"001", "100", "111", "100"}}
   };
@@ -215,9 +233,9 @@ START_TEST(nodal_side_forces_act_as_the_traction_they_stand_for)
   for (PetscInt asforce = 0; asforce < 2; ++asforce) {
     CkField         linear = {.at = CkLinear};
     AbutBody        body   = Make(&linear, _i % NMESHES, (AbutShape)(_i / NMESHES));
-    PetscReal      *force, *trace, work = 0., dot, strain, twice, sum = 0.;
+    PetscReal      *force, *trace, work = 0., dot, strain, twice, sum = 0., reaction[2], applied[2];
     Vec             f, u;
-    const AbutSide *top;
+    const AbutSide *top, *base;
     AbutBoundary   *b;
 
     CkOk(AbutBodySetDisplacement(body, "left", 0, Zero, NULL));
@@ -225,8 +243,11 @@ START_TEST(nodal_side_forces_act_as_the_traction_they_stand_for)
     if (!asforce) CkOk(AbutBodySetTraction(body, "top", 1, Square, NULL));
     CkOk(AbutBodySetUp(body));
     CkOk(AbutBodyGetSide(body, 3, &top));
+    CkOk(AbutBodyGetSide(body, 2, &base));
     CkOk(AbutBodyCreateVec(body, &f));
-    CkOk(PetscCalloc2(top->n, &force, top->n, &trace));
+    CkOk(PetscCalloc2(PetscMax(top->n, base->n), &force, PetscMax(top->n, base->n), &trace));
+    for (PetscInt i = 0; i < base->n; ++i) force[i] = 2.;
+    CkOk(AbutBodyAddSideForce(body, 2, force, f)); /* straight into the support */
     for (PetscInt i = 0; i < top->n; ++i) force[i] = more;
     for (PetscInt i = 0; asforce && i + 1 < top->n; ++i) { /* on the element from r back to r - h */
       const PetscReal r = top->x[2 * i], h = r - top->x[2 * i + 2];
@@ -242,10 +263,15 @@ START_TEST(nodal_side_forces_act_as_the_traction_they_stand_for)
     CkOk(VecDot(f, u, &dot));
     for (PetscInt i = 0; i < top->n; ++i) work += force[i] * trace[i];
     ck_assert_double_eq_tol(dot, work, 1e-12 * PetscAbsReal(work));
+    CkOk(AbutBodyGetSideTrace(body, 2, u, trace)); /* nothing moves at the base */
+    for (PetscInt i = 0; i < base->n; ++i) ck_assert_double_eq(trace[i], 0.);
+    CkOk(AbutBodyGetReaction(body, reaction, applied));
+    ck_assert_double_eq_tol(reaction[1], -applied[1], 1e-10);
     CkOk(AbutBodyGetEnergy(body, &strain, &twice));
     ck_assert_double_eq_tol(twice, 2. * strain, 1e-11 * twice);
     CkOk(AbutBodyGetBoundary(body, &b));
     for (PetscInt i = 0; i < top->n; ++i) sum += force[i];
+    sum -= 2. * base->n;
     for (PetscInt i = 0; i < b->n; ++i) sum -= b->contact[2 * i + 1];
     ck_assert_double_eq_tol(sum, 0., 1e-10);
     CkOk(AbutBoundaryDestroy(&b));
@@ -253,24 +279,32 @@ START_TEST(nodal_side_forces_act_as_the_traction_they_stand_for)
     CkOk(VecDestroy(&f));
     CkOk(AbutBodyDestroy(&body));
   }
-  for (PetscInt i = 0; i < 7; ++i) ck_assert_double_eq_tol(value[0][i], value[1][i], 1e-11 * (i < 2 ? PetscAbsReal(value[1][0]) + PetscAbsReal(value[1][1]) : value[1][6]));
+  for (PetscInt i = 0; i < 7; ++i)
+    ck_assert_double_eq_tol(value[0][i], value[1][i],
+                            1e-11 * (i < 2 ? PetscAbsReal(value[1][0]) + PetscAbsReal(value[1][1]) : value[1][6]));
 }
 END_TEST
 
 START_TEST(the_far_side_is_the_base_of_a_winkler_layer)
 {
-  const PetscReal up[2] = {0., 1.}, left[2] = {-1., 0.}, x[2] = {3., 3.}, y[2] = {1., 2.5};
-  CkField         linear = {.at = CkLinear};
-  AbutBody        body   = Make(&linear, GRID, ABUT_QUAD);
-  PetscReal       value, u[2], s[3], height;
-  const PetscReal foot[2] = {3., 2.};
-  PetscBool       found;
+  const PetscReal up[2] =
+    {
+      0., 1.
+  },
+                  left[2] = {-1., 0.}, right[2] = {1., 0.}, x[2] = {3., 3.}, y[2] = {1., 2.5}, foot[2][2] = {{3., 2.}, {5., 2.5}};
+  CkField   linear = {.at = CkLinear};
+  AbutBody  body   = Make(&linear, GRID, ABUT_QUAD);
+  PetscReal value, u[2], s[3], height;
+  PetscBool found;
 
-  CkGiveAll(body, &linear, "u-", "--", "-u", "--");
-  CkLinear(&linear, foot, u, s);
+  CkGiveAll(body, &linear, "--", "u-", "-u", "--");
+  CkLinear(&linear, foot[0], u, s);
   CkOk(AbutBodyGetSupportDisplacement(body, x, up, &value, &found));
   ck_assert(found && value == u[1]);
+  CkLinear(&linear, foot[1], u, s);
   CkOk(AbutBodyGetSupportDisplacement(body, y, left, &value, &found));
+  ck_assert(found && value == -u[0]);
+  CkOk(AbutBodyGetSupportDisplacement(body, foot[1], right, &value, &found));
   ck_assert_int_eq(found, PETSC_FALSE);
   CkOk(AbutBodyGetHeight(body, up, &height));
   ck_assert_double_eq(height, 1.);

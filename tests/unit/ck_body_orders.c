@@ -19,7 +19,9 @@ START_TEST(the_displacement_converges_with_order_2_and_the_stress_with_order_1)
   PetscReal       l2[3], energy[3];
 
   if (how == GIVEN_DISPLACEMENT) CkGiveAll(body, &smooth, "uu", "uu", "uu", "uu");
-  else CkGiveAll(body, &smooth, "ut", "tt", "tu", "tt"); /* with both u on a side the dual problem is singular where it ends: a quarter of an order less in L2 */
+  else
+    CkGiveAll(body, &smooth, "ut", "tt", "tu",
+              "tt"); /* with both u on a side the dual problem is singular where it ends: a quarter of an order less in L2 */
   if (how == HANGING) CkRefine(CkMeshOf(body), CkTowardsPoint, 3);
   for (PetscInt i = 0; i < 3; ++i) {
     if (i) CkRefine(CkMeshOf(body), CkEverywhere, 1);
@@ -59,7 +61,10 @@ END_TEST
 /* The Hertz pressure on the top: errors known from an independent program, half an order lost nowhere but at the edge of the pressure */
 START_TEST(the_hertz_box_has_the_known_energy_errors)
 {
-  const PetscReal known[2][2] = {{0.0619, 0.03144}, {0.1142, 0.0589}};
+  const PetscReal known[2][2] = {
+    {0.0619, 0.03144},
+    {0.1142, 0.0589 }
+  };
 
   for (PetscInt i = 0; i < 2; ++i) {
     CkField   hertz = {.at = CkHertz};

@@ -4,8 +4,9 @@
 /* The linear solvers of a body, its keys, and what its assembly costs */
 
 /* The layers scene's conditions: a symmetry plane and a smooth base, so that the components of a node are held apart */
-static const char *const ck_layer = "-body_mesh_box 0,0,4,1 -body_mesh_cells 64,16 -body_material_young 2.1e5 -body_material_poisson 0.3 -body_bc_left_u1 0 "
-                                    "-body_bc_bottom_u2 0 -body_bc_right_t2 -50 -body_bc_top_t2 -100 ";
+static const char *const
+  ck_layer = "-body_mesh_box 0,0,4,1 -body_mesh_cells 64,16 -body_material_young 2.1e5 -body_material_poisson 0.3 -body_bc_left_u1 0 "
+             "-body_bc_bottom_u2 0 -body_bc_right_t2 -50 -body_bc_top_t2 -100 ";
 
 static AbutBody Layer(const char *more)
 {
@@ -27,12 +28,12 @@ START_TEST(every_solver_finds_the_displacement_of_the_direct_one)
     const char *options, *ksp, *pc;
     PetscInt    most; /* iterations */
   } solvers[] = {
-    {"-body_pc_type hypre -body_ksp_type cg",                                 "cg",      "hypre",    12 },
-    {"-body_pc_type hypre",                                                   "cg",      "hypre",    12 },
-    {"-body_pc_type hypre -body_ksp_type gmres",                              "gmres",   "hypre",    14 },
-    {"-body_ksp_type cg",                                                     "cg",      "cholesky", 2  },
-    {"-body_pc_type lu",                                                      "preonly", "lu",       1  },
-    {"-body_pc_type bjacobi -body_ksp_type cg -body_ksp_rtol 1e-12",          "cg",      "bjacobi",  500}
+    {"-body_pc_type hypre -body_ksp_type cg",                        "cg",      "hypre",    12 },
+    {"-body_pc_type hypre",                                          "cg",      "hypre",    12 },
+    {"-body_pc_type hypre -body_ksp_type gmres",                     "gmres",   "hypre",    14 },
+    {"-body_ksp_type cg",                                            "cg",      "cholesky", 2  },
+    {"-body_pc_type lu",                                             "preonly", "lu",       1  },
+    {"-body_pc_type bjacobi -body_ksp_type cg -body_ksp_rtol 1e-12", "cg",      "bjacobi",  500}
   };
   AbutBody           direct = Layer(""), body = Layer(solvers[_i].options);
   Vec                u, v;
@@ -99,7 +100,7 @@ START_TEST(the_solver_goes_along_when_the_mesh_adapts)
   CkRefine(CkMeshOf(body), CkTowardsPoint, 6);
   CkOk(AbutBodySolve(body, NULL));
   CkOk(AbutBodyGetSolveCounts(body, &solves, &both));
-  ck_assert_int_le(both - first, 16); /* hanging vertices and seven levels */
+  ck_assert_int_le(both - first, 13); /* hanging vertices and seven levels; 16 with a BoomerAMG left over from the first mesh */
   CkOk(AbutBodyGetLinearResidual(body, &residual));
   ck_assert_double_lt(residual, 1e-9);
   CkOk(AbutBodyDestroy(&body));
@@ -113,7 +114,8 @@ START_TEST(a_body_is_described_by_its_keys)
   AbutBody        body;
   PetscReal       young, poisson, value[7];
 
-  CkOptions("-Body_mesh_box 0,0,2,1 -body_mesh_cells 3,2 -body_mesh_shape triangle -body_material_young 1000 -body_material_poisson 0.25 -body_bc_left_u1 0 -body_bc_right_u1 0 "
+  CkOptions("-Body_mesh_box 0,0,2,1 -body_mesh_cells 3,2 -body_mesh_shape triangle -body_material_young 1000 -body_material_poisson 0.25 "
+            "-body_bc_left_u1 0 -body_bc_right_u1 0 "
             "-body_bc_bottom_u2 1e-2 -body_bc_top_t2 -12");
   CkOk(AbutBodyCreate(PETSC_COMM_WORLD, "body", &body));
   CkOk(AbutBodySetFromOptions(body));
@@ -131,17 +133,17 @@ END_TEST
 
 START_TEST(keys_that_contradict_or_are_missing_are_refused)
 {
-  static const char *const box = "-body_mesh_box 0,0,2,1 -body_mesh_cells 3,2 ", *bad[][2] = {
-    {"-body_material_poisson 0.3",                                                                  "body_material_young: missing"  },
-    {"-body_material_young 1",                                                                      "body_material_poisson: missing"},
-    {"-body_material_young 1 -body_material_poisson 0.5",                                           "body_material_poisson:"        },
-    {"-body_material_young 1 -body_material_poisson 0.3 -body_bc_left_u1 0 -body_bc_left_t1 0",     "body_bc_left_t1:"              }
+  static const char *const bad[][2] = {
+    {"-body_material_poisson 0.3",                                           "body_material_young: missing"  },
+    {"-body_material_young 1",                                               "body_material_poisson: missing"},
+    {"-body_material_young 1 -body_material_poisson 0.5",                    "body_material_poisson:"        },
+    {"-body_material_young 1 -body_material_poisson 0.3 -body_bc_left_t1 0", "body_bc_left_t1:"              }
   };
   char           text[1024];
   AbutBody       body;
   PetscErrorCode code;
 
-  CkOk(PetscSNPrintf(text, sizeof(text), "%s%s", box, bad[_i][0]));
+  CkOk(PetscSNPrintf(text, sizeof(text), "-body_mesh_box 0,0,2,1 -body_mesh_cells 3,2 -body_bc_left_u1 0 %s", bad[_i][0]));
   CkOptions(text);
   CkOk(AbutBodyCreate(PETSC_COMM_WORLD, "body", &body));
   CkCatch(code = AbutBodySetFromOptions(body));

@@ -33,7 +33,8 @@ START_TEST(a_cell_maps_to_where_its_inverse_finds_the_point)
     CkOk(AbutMeshMapCell(mesh, c, xi, x, N, G, &det));
     CkOk(AbutMeshInvertCell(mesh, c, x, back, &inside));
     ck_assert_int_eq(inside, PETSC_TRUE);
-    for (PetscInt d = 0; d < 2; ++d) ck_assert_double_eq_tol(back[d], xi[d], 1e-10); /* the point itself is rounded to 1e-15 of its 10, cells are 1e-2 */
+    for (PetscInt d = 0; d < 2; ++d)
+      ck_assert_double_eq_tol(back[d], xi[d], 1e-10); /* the point itself is rounded to 1e-15 of its 10, cells are 1e-2 */
     for (PetscInt k = 0; k < t->corners; ++k) {
       const PetscReal *p = t->x + 2 * t->cell[t->corners * c + k], *q = t->x + 2 * t->cell[t->corners * c + (k + 1) % t->corners];
 
@@ -55,10 +56,16 @@ END_TEST
 
 START_TEST(a_point_is_in_the_cells_that_touch_it_and_in_no_other)
 {
-  AbutMesh                mesh = CkBox(0., 0., 3., 2., 3, 2, (AbutShape)_i);
-  const AbutMeshTopology *t    = CkTopology(mesh);
-  const PetscReal         point[5][2] = {{0.25, 0.5}, {1., 0.5}, {1., 1.}, {0., 0.}, {3. + 1e-6, 1.}};
-  const PetscInt          quads[5] = {1, 2, 4, 1, 0}, triangles[5] = {1, 2, 6, 2, 0};
+  AbutMesh                mesh        = CkBox(0., 0., 3., 2., 3, 2, (AbutShape)_i);
+  const AbutMeshTopology *t           = CkTopology(mesh);
+  const PetscReal         point[5][2] = {
+    {0.25,      0.5},
+    {1.,        0.5},
+    {1.,        1. },
+    {0.,        0. },
+    {3. + 1e-6, 1. }
+  };
+  const PetscInt quads[5] = {1, 2, 4, 1, 0}, triangles[5] = {1, 2, 6, 2, 0};
 
   for (PetscInt i = 0; i < 5; ++i) {
     PetscInt n = 0;
@@ -184,14 +191,14 @@ END_TEST
 START_TEST(a_mesh_that_cannot_be_is_refused_with_its_key)
 {
   static const char *const bad[][2] = {
-    {"-a_mesh_cells 2,2",                                                "a_mesh_box: missing"  },
-    {"-a_mesh_box 0,0,1,1",                                              "a_mesh_cells: missing"},
-    {"-a_mesh_box 0,0,0,1 -a_mesh_cells 2,2",                            "a_mesh_box:"          },
-    {"-a_mesh_box 0,0,1,-1 -a_mesh_cells 2,2",                           "a_mesh_box:"          },
-    {"-a_mesh_box 0,0,1,1 -a_mesh_cells 0,2",                            "a_mesh_cells:"        },
-    {"-a_mesh_box 0,0,1,1 -a_mesh_cells 2,-1",                           "a_mesh_cells:"        },
-    {"-a_mesh_box 0,0,1,1 -a_mesh_cells 1000000,1000000",                "a_mesh_cells:"        },
-    {"-a_mesh_box 0,0,1,1 -a_mesh_cells 2,2 -a_mesh_order 2",            "a_mesh_order:"        },
+    {"-a_mesh_cells 2,2",                                     "a_mesh_box: missing"  },
+    {"-a_mesh_box 0,0,1,1",                                   "a_mesh_cells: missing"},
+    {"-a_mesh_box 0,0,0,1 -a_mesh_cells 2,2",                 "a_mesh_box:"          },
+    {"-a_mesh_box 0,0,1,-1 -a_mesh_cells 2,2",                "a_mesh_box:"          },
+    {"-a_mesh_box 0,0,1,1 -a_mesh_cells 0,2",                 "a_mesh_cells:"        },
+    {"-a_mesh_box 0,0,1,1 -a_mesh_cells 2,-1",                "a_mesh_cells:"        },
+    {"-a_mesh_box 0,0,1,1 -a_mesh_cells 1000000,1000000",     "a_mesh_cells:"        },
+    {"-a_mesh_box 0,0,1,1 -a_mesh_cells 2,2 -a_mesh_order 2", "a_mesh_order:"        },
   };
   AbutMesh       mesh;
   PetscErrorCode code;

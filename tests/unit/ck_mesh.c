@@ -30,7 +30,8 @@ static AbutMesh Make(MPI_Comm comm, int which)
   const PetscBool one  = (PetscBool)(which == QUAD_ONE || which == QUAD_ONE_POINT || which == TRIANGLE_ONE || which == TRIANGLE_ONE_POINT);
   AbutMesh        mesh = CkBoxOn(comm, 0., 0., one ? 1. : 4., 1., one ? 1 : 8, one ? 1 : 2, Shape(which));
 
-  if (which == QUAD_POINT || which == TRIANGLE_POINT || which == QUAD_ONE_POINT || which == TRIANGLE_ONE_POINT) CkRefine(mesh, CkTowardsPoint, 10);
+  if (which == QUAD_POINT || which == TRIANGLE_POINT || which == QUAD_ONE_POINT || which == TRIANGLE_ONE_POINT)
+    CkRefine(mesh, CkTowardsPoint, 10);
   if (which == QUAD_SCATTERED || which == TRIANGLE_SCATTERED) CkRefine(mesh, CkScattered, 5);
   return mesh;
 }
@@ -77,7 +78,8 @@ static PetscBool IsMiddle(const CkCells *all, const PetscReal x[2])
 {
   for (PetscInt c = 0; c < all->n; ++c)
     for (PetscInt k = 0; k < all->corners; ++k) {
-      const PetscReal *p = all->x + 2 * (all->corners * c + k), *q = all->x + 2 * (all->corners * c + (k + 1) % all->corners), m[2] = {0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])};
+      const PetscReal *p = all->x + 2 * (all->corners * c + k), *q = all->x + 2 * (all->corners * c + (k + 1) % all->corners),
+                      m[2] = {0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])};
 
       if (Same(m, x)) return PETSC_TRUE;
     }
@@ -164,7 +166,9 @@ START_TEST(a_cell_has_the_size_of_its_level)
 
         ck_assert_double_eq(PetscAbsReal(p[0] - q[0]) + PetscAbsReal(p[1] - q[1]), first);
       }
-    else ck_assert(area == 0.5 * first * first || area == first * first); /* a level is two bisections; the first of them counts as the whole */
+    else
+      ck_assert(area == 0.5 * first * first ||
+                area == first * first); /* a level is two bisections; the first of them counts as the whole */
   }
   CkOk(MPI_Allreduce(&most, &highest, 1, MPIU_INT, MPI_MAX, PETSC_COMM_WORLD));
   if (_i == QUAD_POINT || _i == QUAD_ONE_POINT) ck_assert_int_eq(highest, 10);
@@ -173,8 +177,8 @@ END_TEST
 
 START_TEST(across_a_side_levels_differ_by_at_most_one_and_triangles_conform)
 {
-  AbutMesh  mesh = meshes[_i];
-  CkCells   all  = CkGather(mesh);
+  AbutMesh  mesh   = meshes[_i];
+  CkCells   all    = CkGather(mesh);
   PetscInt  halves = 0;
   PetscReal lower[2], upper[2];
 
@@ -182,8 +186,10 @@ START_TEST(across_a_side_levels_differ_by_at_most_one_and_triangles_conform)
   for (PetscInt c = 0; c < all.n; ++c)
     for (PetscInt k = 0; k < all.corners; ++k) {
       const PetscReal *p = all.x + 2 * (all.corners * c + k), *q = all.x + 2 * (all.corners * c + (k + 1) % all.corners);
-      const PetscReal  m[2] = {0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])}, beforep[2] = {2. * p[0] - q[0], 2. * p[1] - q[1]}, afterq[2] = {2. * q[0] - p[0], 2. * q[1] - p[1]};
-      const PetscInt   whole = CountSides(&all, q, p), split = CountSides(&all, q, m) + CountSides(&all, m, p), half = CountSides(&all, afterq, p) + CountSides(&all, q, beforep);
+      const PetscReal  m[2] = {0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])}, beforep[2] = {2. * p[0] - q[0], 2. * p[1] - q[1]},
+                      afterq[2] = {2. * q[0] - p[0], 2. * q[1] - p[1]};
+      const PetscInt whole = CountSides(&all, q, p), split = CountSides(&all, q, m) + CountSides(&all, m, p),
+                     half = CountSides(&all, afterq, p) + CountSides(&all, q, beforep);
 
       ck_assert_int_eq(CountSides(&all, p, q), 1);
       if (SideOf(p, q, upper) >= 0) ck_assert_int_eq(whole + split + half, 0);
@@ -259,8 +265,8 @@ END_TEST
 
 START_TEST(element_sides_on_the_boundary_cover_each_side_once_with_the_body_on_the_left)
 {
-  AbutMesh                mesh = meshes[_i];
-  const AbutMeshTopology *t    = CkTopology(mesh);
+  AbutMesh                mesh      = meshes[_i];
+  const AbutMeshTopology *t         = CkTopology(mesh);
   PetscReal               length[4] = {0., 0., 0., 0.}, lower[2], upper[2];
   PetscInt               *starts, *ends;
 
@@ -272,7 +278,8 @@ START_TEST(element_sides_on_the_boundary_cover_each_side_once_with_the_body_on_t
     PetscInt         of = 0;
 
     for (PetscInt k = 0; k < t->corners; ++k)
-      if (cell[k] == edge[0] && cell[(k + 1) % t->corners] == edge[1]) ++of; /* cells turn counter-clockwise: then the body is on the left */
+      if (cell[k] == edge[0] && cell[(k + 1) % t->corners] == edge[1])
+        ++of; /* cells turn counter-clockwise: then the body is on the left */
     ck_assert_int_eq(of, 1);
     ck_assert_int_eq(edge[2], SideOf(p, q, upper));
     length[edge[2]] += PetscAbsReal(p[0] - q[0]) + PetscAbsReal(p[1] - q[1]);
@@ -301,7 +308,7 @@ START_TEST(the_mesh_is_the_same_on_any_number_of_ranks)
   ck_assert_int_eq(CkTopology(mesh)->nglobal, CkTopology(alone)->nglobal);
   for (PetscInt c = 0; c < all.n; ++c)
     for (PetscInt k = 0; k < 2; ++k) {
-      const PetscReal *x = (k ? one.x : all.x) + 2 * all.corners * c;
+      const PetscReal *x    = (k ? one.x : all.x) + 2 * all.corners * c;
       PetscReal        m[2] = {0., 0.};
 
       for (PetscInt i = 0; i < 2 * all.corners; ++i) m[i % 2] += x[i] / all.corners;
@@ -314,10 +321,25 @@ START_TEST(the_mesh_is_the_same_on_any_number_of_ranks)
 }
 END_TEST
 
+START_TEST(the_same_mesh_made_twice_is_distributed_alike_and_evenly)
+{
+  AbutMesh                mesh = meshes[_i], again = Make(PETSC_COMM_WORLD, _i);
+  const AbutMeshTopology *t = CkTopology(mesh), *r = CkTopology(again);
+  const PetscInt          n = CkSum(t->ncells);
+  PetscMPIInt             size;
+
+  CkOk(MPI_Comm_size(PETSC_COMM_WORLD, &size));
+  ck_assert_int_eq(CkSum(t->ncells != r->ncells), 0);
+  ck_assert(t->ncells >= n / size && t->ncells <= n / size + 1);
+  for (PetscInt i = 0; i < t->corners * t->ncells; ++i) ck_assert(Same(t->x + 2 * t->cell[i], r->x + 2 * r->cell[i]));
+  CkOk(AbutMeshDestroy(&again));
+}
+END_TEST
+
 START_TEST(triangles_keep_their_angles)
 {
-  AbutMesh  mesh = meshes[_i];
-  CkCells   all  = CkGather(mesh);
+  AbutMesh  mesh   = meshes[_i];
+  CkCells   all    = CkGather(mesh);
   PetscReal cosine = 0.;
 
   for (PetscInt c = 0; c < all.n; ++c)
@@ -364,6 +386,7 @@ int main(int argc, char **argv)
   tcase_add_loop_test(tc, every_vertex_with_unknowns_has_one_number_and_one_owner, 0, NMESHES);
   tcase_add_loop_test(tc, element_sides_on_the_boundary_cover_each_side_once_with_the_body_on_the_left, 0, NMESHES);
   tcase_add_loop_test(tc, the_mesh_is_the_same_on_any_number_of_ranks, 0, NMESHES);
+  tcase_add_loop_test(tc, the_same_mesh_made_twice_is_distributed_alike_and_evenly, 0, NMESHES);
   tcase_add_loop_test(tc, triangles_keep_their_angles, TRIANGLE_GRID, NMESHES);
   tcase_add_test(tc, a_mesh_with_fewer_cells_than_ranks_leaves_ranks_without_cells);
   suite_add_tcase(suite, tc);

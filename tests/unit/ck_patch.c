@@ -6,18 +6,18 @@
 
 #define DELTA 0.01
 #define GAP   0.002
-#define THETA 0.5
+#define THETA 4.
 
 /* Of both bodies: the base, held on its far side, and the punch, pushed by delta */
 static const PetscReal height[2] = {1., 0.7}, young[2] = {1., 3.}, poisson[2] = {0.3, 0.2};
 
 typedef struct {
-  PetscInt  along;            /* the direction of the sides in contact: 0 punch on base, 1 punch to the right of the base */
-  PetscReal low[2], high[2];  /* ends of these sides */
-  PetscInt  cells[2];         /* along them */
+  PetscInt  along;           /* the direction of the sides in contact: 0 punch on base, 1 punch to the right of the base */
+  PetscReal low[2], high[2]; /* ends of these sides */
+  PetscInt  cells[2];        /* along them */
   AbutShape shape[2];
-  PetscInt  levels[2];        /* refinements of the cells at the first half of the side */
-  PetscBool held[2];          /* the displacement normal to the contact is prescribed on the free end of the body too */
+  PetscInt  levels[2]; /* refinements of the cells at the first half of the side */
+  PetscBool held[2];   /* the displacement normal to the contact is prescribed on the free end of the body too */
 } Patch;
 
 /* clang-format off */
@@ -29,27 +29,29 @@ static const Patch patches[] = {
   {.high = {1., 1.}, .cells = {4, 3}, .levels = {2, 0}},
   {.high = {1., 1.}, .cells = {4, 4}, .shape = {ABUT_TRIANGLE, ABUT_QUAD}, .levels = {2, 1}, .along = 1},
   {.high = {1., 1.}, .cells = {1, 100}},
-  {.high = {1., 1.}, .cells = {3, 4}, .held = {PETSC_TRUE, PETSC_TRUE}},
-  {.high = {1., 1.}, .cells = {4, 4}, .held = {PETSC_TRUE, PETSC_FALSE}},
-  {.high = {1., 1.}, .cells = {4, 3}, .held = {PETSC_FALSE, PETSC_TRUE}, .levels = {0, 1}},
   /* sides of unequal length, beside each other */
   {.low = {0., 0.37}, .high = {3., 2.21}, .cells = {7, 5}},
   {.low = {0., -0.4}, .high = {3., 1.6}, .cells = {7, 50}, .shape = {ABUT_QUAD, ABUT_TRIANGLE}},
   {.low = {-0.1, 0.}, .high = {1.7, 2.}, .cells = {9, 6}, .along = 1},
-  {.low = {0., 0.7}, .high = {3., 0.9}, .cells = {2, 3}},    /* within one element */
-  {.low = {0., 2.999}, .high = {3., 4.}, .cells = {3, 4}},   /* a thousandth of one */
-  {.low = {0., 1e-6}, .high = {3., 2. + 1e-6}, .cells = {3, 3}}
+  /* by little: within one element, by a thousandth of one, all but a millionth */
+  {.low = {0., 0.7}, .high = {3., 0.9}, .cells = {2, 3}},
+  {.low = {0., 2.999}, .high = {3., 4.}, .cells = {3, 4}},
+  {.low = {0., 1e-6}, .high = {3., 2. + 1e-6}, .cells = {3, 3}},
+  /* a node that carries no pressure */
+  {.high = {1., 1.}, .cells = {3, 4}, .held = {PETSC_TRUE, PETSC_TRUE}},
+  {.high = {1., 1.}, .cells = {4, 4}, .held = {PETSC_TRUE, PETSC_FALSE}},
+  {.high = {1., 1.}, .cells = {4, 3}, .held = {PETSC_FALSE, PETSC_TRUE}, .levels = {0, 1}}
 };
 /* clang-format on */
-static const int npatches = PETSC_STATIC_ARRAY_LENGTH(patches), first_unequal = 10;
+static const int npatches = PETSC_STATIC_ARRAY_LENGTH(patches), first_unequal = 7, first_alone = 10, end_unequal = 13;
 
-/* What the bits of a variant say: pressures on the second side of the pair; the punch is the first body of the pair; the free ends are those of small x or y */
+/* The bits of a variant: pressures on the second side of the pair; the punch is its first body; the free ends are those of small x or y */
 static PetscBool Bit(PetscInt variant, PetscInt bit)
 {
   return (PetscBool)(variant >> bit & 1);
 }
 
-static const PetscInt nvariants = 8;
+static PetscInt nvariants = 8; /* on several ranks only the first two */
 
 static PetscReal Overlap(const Patch *patch, PetscReal *from, PetscReal *to)
 {
@@ -87,7 +89,7 @@ static void Evenly(const CkField *field, const PetscReal x[2], PetscReal u[2], P
   s[2]      = 0.;
 }
 
-/* The same even pressure where the other body does not reach: on the element with its end, the linear function with the same nodal forces */
+/* The same pressure where the other body does not reach: on the element with its end, the linear function of the same nodal forces */
 static PetscErrorCode PressureBeside(const PetscReal x[2], PetscReal *value, void *ctx)
 {
   const Box      *box = (const Box *)ctx;
@@ -105,15 +107,6 @@ static PetscErrorCode PressureBeside(const PetscReal x[2], PetscReal *value, voi
   return PETSC_SUCCESS;
 }
 
-static PetscBool InFirstHalf(AbutMesh mesh, PetscInt c, PetscInt along)
-{
-  PetscReal x[2], lower[2], upper[2];
-
-  CkCenter(CkTopology(mesh), c, x);
-  CkOk(AbutMeshGetBox(mesh, lower, upper));
-  return (PetscBool)(x[along] < 0.5 * (lower[along] + upper[along]));
-}
-
 static const char *const name[2] = {"base", "punch"};
 static const char *const side[4] = {"left", "right", "bottom", "top"};
 
@@ -123,17 +116,24 @@ static AbutScene Create(const Patch *patch, PetscInt variant, const char gap[])
   char            text[4096], part[512];
   AbutScene       scene;
 
-  CkOk(PetscSNPrintf(text, sizeof(text), "-scene_bodies base,punch -scene_pairs mid -mid_pair_bodies %s,%s -mid_pair_sides %s,%s -mid_pair_gap %s -mid_pair_theta %g -mid_pair_pressure_side %s "
-                     "-snes_ddneumann_start nocontact -snes_rtol 1e-12", name[punchfirst], name[!punchfirst],
-                     side[2 * !patch->along + !punchfirst], side[2 * !patch->along + punchfirst], gap, THETA, Bit(variant, 0) ? "second" : "first"));
+  CkOk(PetscSNPrintf(text, sizeof(text),
+                     "-scene_bodies base,punch -scene_pairs mid -mid_pair_bodies %s,%s -mid_pair_sides %s,%s -mid_pair_gap %s "
+                     "-mid_pair_theta %g -mid_pair_pressure_side %s "
+                     "-snes_ddneumann_start nocontact -snes_ddneumann_gamma 0.7 -snes_rtol 1e-12",
+                     name[punchfirst], name[!punchfirst], side[2 * !patch->along + !punchfirst], side[2 * !patch->along + punchfirst], gap,
+                     THETA, Bit(variant, 0) ? "second" : "first"));
   for (PetscInt b = 0; b < 2; ++b) {
-    const PetscReal low = b ? height[0] : 0.;
+    const PetscReal low       = b ? height[0] : 0.;
     PetscReal       corner[4] = {patch->low[b], low, patch->high[b], low + height[b]};
-    PetscInt        cells[2] = {patch->cells[b], 2};
+    PetscInt        cells[2]  = {patch->cells[b], 2};
 
-    for (PetscInt k = 0; k < 4 && patch->along; k += 2) corner[k] = low + (k ? height[b] : 0.), corner[k + 1] = k ? patch->high[b] : patch->low[b];
-    CkOk(PetscSNPrintf(part, sizeof(part), " -%s_mesh_box %.15g,%.15g,%.15g,%.15g -%s_mesh_cells %d,%d -%s_mesh_shape %s -%s_material_young %g -%s_material_poisson %g", name[b], corner[0], corner[1],
-                       corner[2], corner[3], name[b], (int)cells[patch->along], (int)cells[!patch->along], name[b], patch->shape[b] == ABUT_QUAD ? "quad" : "triangle", name[b], young[b], name[b], poisson[b]));
+    for (PetscInt k = 0; k < 4 && patch->along; k += 2)
+      corner[k] = low + (k ? height[b] : 0.), corner[k + 1] = k ? patch->high[b] : patch->low[b];
+    CkOk(PetscSNPrintf(part, sizeof(part),
+                       " -%s_mesh_box %.15g,%.15g,%.15g,%.15g -%s_mesh_cells %d,%d -%s_mesh_shape %s -%s_material_young %g "
+                       "-%s_material_poisson %g",
+                       name[b], corner[0], corner[1], corner[2], corner[3], name[b], (int)cells[patch->along], (int)cells[!patch->along],
+                       name[b], patch->shape[b] == ABUT_QUAD ? "quad" : "triangle", name[b], young[b], name[b], poisson[b]));
     CkOk(PetscStrlcat(text, part, sizeof(text)));
   }
   CkOptions(text);
@@ -148,40 +148,47 @@ static void Destroy(AbutScene *scene)
   CkOptionsEnd();
 }
 
-/* The conditions and the mesh of a body; beside: what the other body does not cover is pressed all the same */
-static AbutBody Prepare(AbutScene scene, Box *box, PetscInt variant, PetscBool beside)
+static void RefineFirstHalf(AbutMesh mesh, PetscInt along, PetscReal middle)
 {
-  const Patch   *patch  = box->patch;
-  const PetscInt b = box->b, along = patch->along, across = !along;
-  const char    *still = side[2 * along + Bit(variant, 2)], *end = side[2 * along + !Bit(variant, 2)];
-  AbutBody       body;
-  AbutMesh       mesh;
+  const AbutMeshTopology *t = CkTopology(mesh);
+  PetscBool              *marks;
+  PetscReal               x[2];
 
-  box->field.at      = Evenly;
-  box->field.young   = young[b];
-  box->field.poisson = poisson[b];
-  box->origin        = Bit(variant, 2) ? patch->high[b] : patch->low[b];
-  CkOk(AbutSceneGetBody(scene, name[b], &body));
-  CkGive(body, &box->field, still, along ? "-u" : "u-");
-  CkGive(body, &box->field, side[2 * across + b], along ? "u-" : "-u");
-  if (patch->held[b]) CkGive(body, &box->field, end, along ? "u-" : "-u");
-  if (beside) CkOk(AbutBodySetTraction(body, side[2 * across + !b], across, PressureBeside, box));
-  CkOk(AbutBodyGetMesh(body, &mesh));
-  CkOk(AbutMeshSetUp(mesh));
-  for (PetscInt level = 0; level < patch->levels[b]; ++level) {
-    const AbutMeshTopology *t = CkTopology(mesh);
-    PetscBool              *marks;
-
-    CkOk(PetscCalloc1(t->ncells, &marks));
-    for (PetscInt c = 0; c < t->ncells; ++c) marks[c] = InFirstHalf(mesh, c, along);
-    CkOk(AbutMeshAdapt(mesh, marks));
-    CkOk(PetscFree(marks));
+  CkOk(PetscMalloc1(t->ncells, &marks));
+  for (PetscInt c = 0; c < t->ncells; ++c) {
+    CkCenter(t, c, x);
+    marks[c] = (PetscBool)(x[along] < middle);
   }
-  return body;
+  CkOk(AbutMeshAdapt(mesh, marks));
+  CkOk(PetscFree(marks));
 }
 
-/* Does the hat function of a node reach into the common part of both sides? What reaches in by less than a thousandth of an element may carry no pressure */
-static int Reaches(const PetscReal x[], PetscInt n, PetscInt i, PetscInt along, PetscReal from, PetscReal to)
+/* The conditions and meshes of both bodies; beside: what the other one does not cover is pressed all the same */
+static void Prepare(AbutScene scene, const Patch *patch, PetscInt variant, PetscBool beside, Box box[2], AbutBody body[2])
+{
+  const PetscInt    along = patch->along, across = !along;
+  const char *const still = side[2 * along + Bit(variant, 2)], *const end = side[2 * along + !Bit(variant, 2)];
+
+  for (PetscInt b = 0; b < 2; ++b) {
+    AbutMesh mesh;
+
+    box[b].field  = (CkField){.at = Evenly, .young = young[b], .poisson = poisson[b]};
+    box[b].patch  = patch;
+    box[b].b      = b;
+    box[b].origin = Bit(variant, 2) ? patch->high[b] : patch->low[b];
+    CkOk(AbutSceneGetBody(scene, name[b], &body[b]));
+    CkGive(body[b], &box[b].field, still, along ? "-u" : "u-");
+    CkGive(body[b], &box[b].field, side[2 * across + b], along ? "u-" : "-u");
+    if (patch->held[b]) CkGive(body[b], &box[b].field, end, along ? "u-" : "-u");
+    if (beside) CkOk(AbutBodySetTraction(body[b], side[2 * across + !b], across, PressureBeside, &box[b]));
+    CkOk(AbutBodyGetMesh(body[b], &mesh));
+    CkOk(AbutMeshSetUp(mesh));
+    for (PetscInt level = 0; level < patch->levels[b]; ++level) RefineFirstHalf(mesh, along, 0.5 * (patch->low[b] + patch->high[b]));
+  }
+}
+
+/* Do the elements at a node lie within the common part of both sides? -1 all of it, 0 nothing, 1 a part */
+static int Within(const PetscReal x[], PetscInt n, PetscInt i, PetscInt along, PetscReal from, PetscReal to)
 {
   PetscReal low = x[2 * i + along], high = low;
 
@@ -189,13 +196,14 @@ static int Reaches(const PetscReal x[], PetscInt n, PetscInt i, PetscInt along, 
     low  = PetscMin(low, x[2 * k + along]);
     high = PetscMax(high, x[2 * k + along]);
   }
-  if (PetscMin(high, to) - PetscMax(low, from) < 1e-12) return 0;
-  return PetscMin(high, to) - PetscMax(low, from) < 1.1e-3 * (high - low) ? -1 : 1;
+  if (low > from - 1e-12 && high < to + 1e-12) return -1;
+  return PetscMin(high, to) - PetscMax(low, from) > 1e-12;
 }
 
 static void CheckPressures(AbutScene scene, const Patch *patch, PetscInt variant, PetscBool exact)
 {
-  const PetscInt   carrier = Bit(variant, 0) != Bit(variant, 1), held = Bit(variant, 2) ? 0 : 1; /* the held node is at the far end, opposite to the still one */
+  const PetscInt   carrier = Bit(variant, 0) != Bit(variant, 1);
+  const PetscReal  end     = (Bit(variant, 2) ? patch->low : patch->high)[carrier]; /* the free one, where the body may be held */
   const PetscReal *p, *x, *D;
   PetscReal        from, to, length = Overlap(patch, &from, &to);
   AbutInterface    iface;
@@ -209,10 +217,12 @@ static void CheckPressures(AbutScene scene, const Patch *patch, PetscInt variant
   CkOk(AbutPairGetPressureNodes(pair, &which, &n, &x, &D));
   ck_assert_int_eq(which, Bit(variant, 0));
   for (PetscInt i = 0; i < n; ++i) {
-    const PetscBool atheld = (PetscBool)(patch->held[carrier] && PetscAbsReal(x[2 * i + patch->along] - (held ? patch->high : patch->low)[carrier]) < 1e-12);
-    const int       reaches = Reaches(x, n, i, patch->along, from, to);
+    const PetscBool atheld = (PetscBool)(patch->held[carrier] && PetscAbsReal(x[2 * i + patch->along] - end) < 1e-12);
+    const int       within = Within(x, n, i, patch->along, from, to);
 
-    if (reaches >= 0) ck_assert_int_eq(D[i] > 0., reaches && !atheld);
+    ck_assert(D[i] >= 0.);
+    if (atheld || !within) ck_assert_double_eq(D[i], 0.);
+    else if (within < 0) ck_assert_double_gt(D[i], 0.);
     if (D[i] == 0.) ck_assert_double_eq(p[i], 0.);
     else if (exact) ck_assert_double_eq_tol(p[i], Pressure(), 1e-9 * Pressure());
     else ck_assert(p[i] >= 0. && !PetscIsInfOrNanReal(p[i]));
@@ -227,13 +237,13 @@ static void CheckPressures(AbutScene scene, const Patch *patch, PetscInt variant
 START_TEST(an_even_pressure_is_exact_on_any_meshes)
 {
   const Patch   *patch   = &patches[_i / nvariants];
-  const PetscInt variant = _i % nvariants, unequal = _i / nvariants >= first_unequal;
-  AbutScene      scene   = Create(patch, variant, "0.002");
-  Box            box[2]  = {{.patch = patch, .b = 0}, {.patch = patch, .b = 1}};
+  const PetscInt variant = _i % nvariants, unequal = _i / nvariants >= first_unequal && _i / nvariants < end_unequal;
+  AbutScene      scene = Create(patch, variant, "0.002");
+  Box            box[2];
   AbutBody       body[2];
   PetscInt       status;
 
-  for (PetscInt b = 0; b < 2; ++b) body[b] = Prepare(scene, &box[b], variant, (PetscBool)unequal);
+  Prepare(scene, patch, variant, (PetscBool)unequal, box, body);
   CkOk(AbutSceneSolve(scene));
   CkOk(AbutSceneGetExitStatus(scene, &status));
   ck_assert_int_eq(status, 0);
@@ -248,15 +258,15 @@ START_TEST(sides_of_unequal_length_are_in_balance)
 {
   const Patch   *patch   = &patches[first_unequal + _i / nvariants];
   const PetscInt variant = _i % nvariants, across = !patch->along;
-  AbutScene      scene   = Create(patch, variant, "0.002");
-  Box            box[2]  = {{.patch = patch, .b = 0}, {.patch = patch, .b = 1}};
+  AbutScene      scene = Create(patch, variant, "0.002");
+  Box            box[2];
   AbutBody       body[2];
   AbutInterface  iface;
   AbutPairState  state;
   PetscInt       status;
 
   CkOk(PetscOptionsSetValue(NULL, "-snes_rtol", "1e-9"));
-  for (PetscInt b = 0; b < 2; ++b) body[b] = Prepare(scene, &box[b], variant, PETSC_FALSE);
+  Prepare(scene, patch, variant, PETSC_FALSE, box, body);
   CkOk(AbutSceneSolve(scene));
   CkOk(AbutSceneGetExitStatus(scene, &status));
   ck_assert_int_eq(status, 0);
@@ -307,14 +317,13 @@ START_TEST(a_pressure_of_one_gives_every_node_its_tributary_length)
   const Patch    *patch   = &patches[_i / nvariants];
   const PetscInt  variant = _i % nvariants;
   AbutScene       scene   = Create(patch, variant, "0");
-  Box             box[2]  = {{.patch = patch, .b = 0}, {.patch = patch, .b = 1}};
-  const PetscReal length  = Overlap(patch, &(PetscReal){0.}, &(PetscReal){0.});
+  Box             box[2];
+  AbutBody        body[2];
   const AbutSide *s[2];
-  PetscReal      *p, *f[2], from, to;
+  PetscReal      *p, *f[2], from, to, length = Overlap(patch, &from, &to);
   AbutPair        pair;
 
-  Overlap(patch, &from, &to);
-  for (PetscInt b = 0; b < 2; ++b) Prepare(scene, &box[b], variant, PETSC_FALSE);
+  Prepare(scene, patch, variant, PETSC_FALSE, box, body);
   PairOf(scene, &pair, s);
   CkOk(PetscMalloc3(s[0]->n + s[1]->n, &p, s[0]->n, &f[0], s[1]->n, &f[1]));
   for (PetscInt i = 0; i < s[0]->n + s[1]->n; ++i) p[i] = 1.;
@@ -326,20 +335,27 @@ START_TEST(a_pressure_of_one_gives_every_node_its_tributary_length)
 }
 END_TEST
 
-/* u_n = c0 + c1 t on both sides, f = 0.002 + 0.01 t: the nodal penetrations are the values at the nodes, wherever the elements are cut */
+/* u_n = c0 + c1 t on both sides, f = 0.002 + 0.01 t. Nodal penetrations are the values at the nodes, wherever the elements are cut,
+   unless a node carries the pressure of an element alone; in any case their mean is right. */
 START_TEST(a_linear_penetration_is_found_at_every_node)
 {
   const Patch     *patch   = &patches[_i / nvariants];
   const PetscInt   variant = _i % nvariants;
+  const PetscBool  alone   = (PetscBool)(_i / nvariants >= first_alone);
   AbutScene        scene   = Create(patch, variant, patch->along ? "0.002+0.01*y" : "0.002+0.01*x");
-  Box              box[2]  = {{.patch = patch, .b = 0}, {.patch = patch, .b = 1}};
+  Box              box[2];
+  AbutBody         body[2];
   const AbutSide  *s[2];
-  const PetscReal *x, *D, c[2][2] = {{0.7, 0.2}, {0.5, -0.1}};
-  PetscReal       *u[2], *p;
-  AbutPair         pair;
-  PetscInt         which, n, carrying = 0;
+  const PetscReal *x, *D,
+    c[2][2] = {
+      {0.7, 0.2 },
+      {0.5, -0.1}
+  };
+  PetscReal *u[2], *p, from, to, length = Overlap(patch, &from, &to), sum = 0.;
+  AbutPair   pair;
+  PetscInt   which, n;
 
-  for (PetscInt b = 0; b < 2; ++b) Prepare(scene, &box[b], variant, PETSC_FALSE);
+  Prepare(scene, patch, variant, PETSC_FALSE, box, body);
   PairOf(scene, &pair, s);
   CkOk(AbutPairGetPressureNodes(pair, &which, &n, &x, &D));
   CkOk(PetscMalloc3(s[0]->n, &u[0], s[1]->n, &u[1], n, &p));
@@ -347,11 +363,10 @@ START_TEST(a_linear_penetration_is_found_at_every_node)
     for (PetscInt i = 0; i < s[k]->n; ++i) u[k][i] = c[k][0] + c[k][1] * s[k]->x[2 * i + patch->along];
   CkOk(AbutPairComputePressure(pair, u[0], u[1], p));
   for (PetscInt i = 0; i < n; ++i) {
-    if (D[i] == 0.) continue;
-    ck_assert_double_eq_tol(p[i] * THETA, 1.2 - 0.002 + 0.09 * x[2 * i + patch->along], 1e-9);
-    ++carrying;
+    if (D[i] > 0. && !alone) ck_assert_double_eq_tol(p[i] * THETA, 1.198 + 0.09 * x[2 * i + patch->along], 1e-10);
+    sum += D[i] * p[i] * THETA;
   }
-  ck_assert_int_gt(carrying, 0);
+  ck_assert_double_eq_tol(sum, (1.198 + 0.045 * (from + to)) * length, 1e-12 * length);
   CkOk(PetscFree3(u[0], u[1], p));
   Destroy(&scene);
 }
@@ -361,12 +376,14 @@ int main(int argc, char **argv)
 {
   Suite *suite = suite_create("patch");
   TCase *tests = tcase_create("contact");
-  int    status;
+  int    status, ranks;
 
   PetscCall(AbutInitialize(&argc, &argv, NULL));
+  PetscCallMPI(MPI_Comm_size(PETSC_COMM_WORLD, &ranks));
+  if (ranks > 1) nvariants = 2;
   tcase_set_timeout(tests, 0);
   tcase_add_loop_test(tests, an_even_pressure_is_exact_on_any_meshes, 0, npatches * nvariants);
-  tcase_add_loop_test(tests, sides_of_unequal_length_are_in_balance, 0, (npatches - first_unequal) * nvariants);
+  tcase_add_loop_test(tests, sides_of_unequal_length_are_in_balance, 0, (end_unequal - first_unequal) * nvariants);
   tcase_add_loop_test(tests, a_pressure_of_one_gives_every_node_its_tributary_length, 0, npatches * nvariants);
   tcase_add_loop_test(tests, a_linear_penetration_is_found_at_every_node, 0, npatches * nvariants);
   suite_add_tcase(suite, tests);

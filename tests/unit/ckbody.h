@@ -37,7 +37,8 @@ static inline void CkLinear(const CkField *field, const PetscReal x[2], PetscRea
 static inline void CkSmooth(const CkField *field, const PetscReal x[2], PetscReal u[2], PetscReal s[3])
 {
   const double complex z = x[0] + I * x[1], phi = 2. * cexp(0.5 * z), dphi = 0.5 * phi, ddphi = 0.25 * phi, psi = csin(z), dpsi = ccos(z);
-  const double complex w = ((3. - 4. * field->poisson) * phi - z * conj(dphi) - conj(psi)) * (1. + field->poisson) / field->young, t = 2. * (conj(z) * ddphi + dpsi);
+  const double complex w = ((3. - 4. * field->poisson) * phi - z * conj(dphi) - conj(psi)) * (1. + field->poisson) / field->young,
+                       t = 2. * (conj(z) * ddphi + dpsi);
 
   u[0] = creal(w);
   u[1] = cimag(w);
@@ -51,7 +52,8 @@ static inline void CkHertz(const CkField *field, const PetscReal x[2], PetscReal
 {
   const PetscReal      a = 0.5, p0 = 1000., y = x[1], nu = field->poisson, mu = field->young / (2. * (1. + nu));
   const double complex z = x[0] + I * PetscMin(y, -1e-290), root = csqrt(a * a - z * z); /* the side y = 0 is seen from below */
-  const double complex Z = -p0 / a * (root - I * z), dZ = p0 / a * (z / root + I), Zi = -p0 / a * (0.5 * z * root + 0.5 * a * a * casin(z / a) - 0.5 * I * z * z);
+  const double complex Z = -p0 / a * (root - I * z), dZ = p0 / a * (z / root + I),
+                       Zi = -p0 / a * (0.5 * z * root + 0.5 * a * a * casin(z / a) - 0.5 * I * z * z);
 
   u[0] = ((1. - 2. * nu) * creal(Zi) - y * cimag(Z)) / (2. * mu);
   u[1] = (2. * (1. - nu) * cimag(Zi) - y * creal(Z)) / (2. * mu);
@@ -72,9 +74,9 @@ static inline PetscErrorCode CkDisplacement(const PetscReal x[2], PetscReal *val
 
 static inline PetscErrorCode CkTraction(const PetscReal x[2], PetscReal *value, void *ctx)
 {
-  const CkData   *data = (const CkData *)ctx;
-  const PetscInt  d    = data->side / 2; /* sides left, right, bottom, top: the normal is -e1, e1, -e2, e2 */
-  PetscReal       u[2], s[3];
+  const CkData  *data = (const CkData *)ctx;
+  const PetscInt d    = data->side / 2; /* sides left, right, bottom, top: the normal is -e1, e1, -e2, e2 */
+  PetscReal      u[2], s[3];
 
   data->field->at(data->field, x, u, s);
   *value = (data->side % 2 ? 1. : -1.) * (d == data->component ? s[d] : s[2]);
@@ -82,7 +84,8 @@ static inline PetscErrorCode CkTraction(const PetscReal x[2], PetscReal *value, 
 }
 
 /* A body of a field, without conditions yet */
-static inline AbutBody CkBodyOn(MPI_Comm comm, const char name[], CkField *field, PetscReal x0, PetscReal y0, PetscReal x1, PetscReal y1, PetscInt nx, PetscInt ny, AbutShape shape)
+static inline AbutBody CkBodyOn(MPI_Comm comm, const char name[], CkField *field, PetscReal x0, PetscReal y0, PetscReal x1, PetscReal y1,
+                                PetscInt nx, PetscInt ny, AbutShape shape)
 {
   const PetscReal lower[2] = {x0, y0}, upper[2] = {x1, y1};
   const PetscInt  cells[2] = {nx, ny};
@@ -119,7 +122,8 @@ static inline void CkGive(AbutBody body, CkField *field, const char side[], cons
   }
 }
 
-static inline void CkGiveAll(AbutBody body, CkField *field, const char left[2], const char right[2], const char bottom[2], const char top[2])
+static inline void CkGiveAll(AbutBody body, CkField *field, const char left[2], const char right[2], const char bottom[2],
+                             const char top[2])
 {
   CkGive(body, field, "left", left);
   CkGive(body, field, "right", right);
@@ -138,7 +142,7 @@ static inline AbutMesh CkMeshOf(AbutBody body)
 /* Largest distance from the field at vertices, over the largest displacement */
 static inline PetscReal CkNodalError(AbutBody body, const CkField *field)
 {
-  const AbutMeshTopology *t      = CkTopology(CkMeshOf(body));
+  const AbutMeshTopology *t       = CkTopology(CkMeshOf(body));
   PetscReal               most[2] = {0., 0.}, u[2], s[3];
   const PetscReal        *uh;
 
@@ -159,8 +163,8 @@ static inline PetscReal CkNodalError(AbutBody body, const CkField *field)
 /* Of the field and of its distance from the solution: L2 norm of the displacement, energy norm (sigma:eps), 25 points a cell; relative */
 static inline void CkErrors(AbutBody body, const CkField *field, PetscReal *l2, PetscReal *energy)
 {
-  const AbutMeshTopology *t    = CkTopology(CkMeshOf(body));
-  const PetscReal         nu   = field->poisson, c = (1. + nu) / field->young;
+  const AbutMeshTopology *t  = CkTopology(CkMeshOf(body));
+  const PetscReal         nu = field->poisson, c = (1. + nu) / field->young;
   PetscReal               sum[4] = {0., 0., 0., 0.}, z[5], w[5];
   const PetscReal        *uh;
 
@@ -169,7 +173,11 @@ static inline void CkErrors(AbutBody body, const CkField *field, PetscReal *l2, 
   for (PetscInt cell = 0; cell < t->ncells; ++cell)
     for (PetscInt q = 0; q < 25; ++q) {
       const PetscReal a = z[q / 5], b = z[q % 5], *corner[4];
-      PetscReal       xi[2] = {2. * a - 1., 2. * b - 1.}, x[2], N[4], G[8], det, s[2][3], u[2][2] = {{0., 0.}}, weight = 4. * w[q / 5] * w[q % 5];
+      PetscReal       xi[2] =
+        {
+          2. * a - 1., 2. * b - 1.
+      },
+                x[2], N[4], G[8], det, s[2][3], u[2][2] = {{0., 0.}}, weight = 4. * w[q / 5] * w[q % 5];
 
       if (t->corners == 3) { /* a square squeezed to a triangle */
         xi[0]  = a;

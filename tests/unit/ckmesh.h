@@ -21,7 +21,8 @@ static inline void CkOptionsEnd(void)
   CkOk(PetscOptionsDestroy(&ck_options));
 }
 
-static inline AbutMesh CkBoxOn(MPI_Comm comm, PetscReal x0, PetscReal y0, PetscReal x1, PetscReal y1, PetscInt nx, PetscInt ny, AbutShape shape)
+static inline AbutMesh CkBoxOn(MPI_Comm comm, PetscReal x0, PetscReal y0, PetscReal x1, PetscReal y1, PetscInt nx, PetscInt ny,
+                               AbutShape shape)
 {
   const PetscReal lower[2] = {x0, y0}, upper[2] = {x1, y1};
   const PetscInt  cells[2] = {nx, ny};

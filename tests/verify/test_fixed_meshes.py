@@ -10,8 +10,8 @@ SCENE = """-scene_bodies lower,upper -scene_pairs mid
 -upper_mesh_box 0,1,4,2 -upper_material_young 2.1e5 -upper_material_poisson 0.3 -upper_bc_left_u1 0 -upper_bc_top_u2 -1.366e-3
 -mid_pair_bodies upper,lower -mid_pair_sides bottom,top -mid_pair_gap 1e-3*x^2"""
 ANDERSON = "-snes_type anderson -snes_anderson_m 20 -snes_rtol 1e-10"
-# Anderson's iterates wander off for small theta; this converges too, in some hundreds of sweeps
-NGMRES = "-snes_type ngmres -snes_ngmres_m 20 -npc_snes_type ddneumann -npc_snes_max_it 1 -snes_rtol 1e-8"
+# Anderson's iterates wander off for small theta; this converges for all, in some hundreds of sweeps
+NGMRES = "-snes_type ngmres -snes_ngmres_m 20 -snes_ngmres_select_type linesearch -npc_snes_type ddneumann -npc_snes_max_it 1"
 
 
 def reference(c):
@@ -111,14 +111,14 @@ def test_energy_error_is_of_first_order():
     error = [uniform(n).energy_error() for n in (8, 16, 32)]
     for n, value, other in zip((8, 16, 32), error, (0.0510, 0.0258, 0.0130)):
         print(f"1/{n}  sqrt(F/F_ref - 1) {value:.5f}, of the other program {other}")
-        assert abs(value / other - 1) < 0.05
+        assert abs(value / other - 1) < 0.02
     print("order:", *(f"{value:.3f}" for value in orders(error)))
     assert all(abs(value - 1) < 0.1 for value in orders(error))
 
 
 def test_other_penalties():
     """The error of the mesh at c = 0.05 and h = 1/16 is 5.7e-4 in P and below 1e-4 in p0; for other c it is no larger, so the same bounds hold.
-    That of the edge grows as the contact gets stiff, to half a cell at most. c itself moves P by 20 %, 0.28 % and 0.028 %, p0 by as much."""
+    That of the edge grows as the contact gets stiff, to half a cell at most. c itself moves P and p0 by 22 %, 0.28 % and 0.028 %."""
     for c in 0.5, 0.005, 0.0005:
         result = Result(16, 16, c=c, loop=NGMRES if c < 0.05 else ANDERSON)
         print(f"c {c}  {result}")

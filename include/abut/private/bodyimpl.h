@@ -43,7 +43,6 @@ struct _p_AbutBody {
 
 PETSC_INTERN PetscErrorCode AbutBodySetConditionsFromOptions_Private(AbutBody, AbutOptionItems, char[], size_t);
 PETSC_INTERN PetscErrorCode AbutBodyConditionsSetUp_Private(AbutBody);
-PETSC_INTERN PetscErrorCode AbutBodyCheckHeld_Private(AbutBody);
 PETSC_INTERN PetscErrorCode AbutBodyEdgeMoments_Private(AbutBody, PetscInt, PetscInt, const PetscReal[2], const PetscReal[2], PetscReal[2]);
 PETSC_INTERN PetscErrorCode AbutBodyAssemble_Private(AbutBody);
 PETSC_INTERN PetscErrorCode AbutCellStiffness_Private(AbutBody, PetscInt, PetscReal[64]);

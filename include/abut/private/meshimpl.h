@@ -6,10 +6,10 @@
 
 typedef struct _AbutMeshOps *AbutMeshOps;
 struct _AbutMeshOps {
-  PetscErrorCode (*create)(AbutMesh, DM *);                            /* required: the first mesh of the box */
-  PetscErrorCode (*refine)(AbutMesh, const PetscBool[], DM *);         /* required: the mesh with the marked cells (and what must follow) split */
-  PetscErrorCode (*getlevels)(AbutMesh, PetscInt[]);                   /* required: level of each local cell of the current DM */
-  PetscErrorCode (*destroy)(AbutMesh);                                 /* optional, frees data */
+  PetscErrorCode (*create)(AbutMesh, DM *);                    /* required: the first mesh of the box */
+  PetscErrorCode (*refine)(AbutMesh, const PetscBool[], DM *); /* required: the mesh with the marked cells (and what must follow) split */
+  PetscErrorCode (*getlevels)(AbutMesh, PetscInt[]);           /* required: level of each local cell of the current DM */
+  PetscErrorCode (*destroy)(AbutMesh);                         /* optional, frees data */
 };
 
 #define ABUT_BOX_SIDES 4

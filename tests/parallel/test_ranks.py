@@ -1,0 +1,107 @@
+"""The number of ranks is nobody's business: the same meshes, the same sweeps, the same record to 1e-8, also where a rank owns no cell.
+
+Round-off differs, so keys that are round-off themselves are left out, and the residual of the loop, a difference of almost equal traces, has fewer digits.
+"""
+import os, tempfile, xml.etree.ElementTree as xml
+
+from abut import LAYERS, read_csv, run
+
+CHEAP = "-mid_pair_penalty 0.5 -snes_ddneumann_gamma 0"  # a tenth of the sweeps
+TIMES = ("time.", "memory.")
+ROUNDOFF = TIMES + ("check.", "error.linear")
+
+
+def compared(key):
+    return not key.startswith(ROUNDOFF) and not key.endswith((".balance", ".complementarity"))
+
+
+def check_same(one, other, where):
+    assert one.keys() == other.keys(), where
+    for key in filter(compared, one):
+        a, b = one[key], other[key]
+        if isinstance(a, float) or isinstance(b, float):
+            digits = 1e-5 if key == "error.loop" else 1e-8
+            assert abs(a - b) <= digits * abs(a), (where, key, a, b)
+        else:
+            assert a == b, (where, key, a, b)
+
+
+def numbers(array):
+    return [float(word) for word in array.text.split()]
+
+
+def read_cells(path):
+    """The cells of a VTU file as a set: corners, with nine digits, and level"""
+    data = {array.get("Name"): numbers(array) for array in xml.parse(path).getroot().iter("DataArray")}
+    x = data["vertices"]
+    points = [(f"{x[i]:.9g}", f"{x[i + 1]:.9g}") for i in range(0, len(x), 3)]
+    ends = [int(end) for end in data["offsets"]]
+    corners = [tuple(sorted(points[int(k)] for k in data["connectivity"][a:b])) for a, b in zip([0] + ends, ends)]
+    return set(zip(corners, data["level"]))
+
+
+def outcome(scene, options, ranks, expect):
+    """Record, rows of the cycles, cells of all meshes"""
+    with tempfile.TemporaryDirectory() as folder:
+        record = run(scene, *options, f"-record_csv {folder}/cycles.csv -output {folder}/fields.vtu", ranks=ranks, expect=expect)
+        rows = read_csv(f"{folder}/cycles.csv")
+        cells = {name: read_cells(f"{folder}/{name}") for name in sorted(os.listdir(folder)) if name.endswith(".vtu")}
+    return record, rows, cells
+
+
+def check_ranks(*options, scene=LAYERS, ranks=(2, 3), expect=0):
+    record, rows, cells = outcome(scene, options, 1, expect)
+    assert len(cells) >= 2 * record["cycles"]
+    for n in ranks:
+        others = outcome(scene, options, n, expect)
+        check_same(record, others[0], f"{n} ranks")
+        assert len(rows) == len(others[1])
+        for i, (one, other) in enumerate(zip(rows, others[1])):
+            check_same(one, other, f"{n} ranks, cycle {i + 1}")
+        assert cells == others[2], f"{n} ranks have other meshes"
+    return record
+
+
+def test_quadrilaterals_adapted_by_boundary_elements():
+    record = check_ranks("-upper_mesh_cells 32,8", CHEAP, "-adaptor_threshold 0.2 -estimator_type fembem", ranks=(2, 3, 4))
+    assert record["cycles"] > 2 and record["body.lower.level_max"] >= 2
+
+
+def test_quadrilaterals_adapted_by_patch_recovery():
+    record = check_ranks("-upper_mesh_cells 32,8", CHEAP, "-adaptor_threshold 0.2 -estimator_type zz")
+    assert record["cycles"] > 2 and record["body.lower.level_max"] >= 2
+
+
+def test_both_bodies_adapted():
+    """Triangles both, or one of each shape"""
+    for options in ("-lower_mesh_shape triangle -estimator_type fembem -adaptor_threshold 0.2", "-estimator_type zz -adaptor_threshold 0.15"):
+        record = check_ranks("-upper_mesh_cells 16,4", CHEAP, "-adaptor_bodies lower,upper", options)
+        assert record["cycles"] > 2 and record["body.upper.cells"] > 128
+
+
+def test_one_sweep_and_one_adaptation_a_cycle():
+    record = check_ranks("-upper_mesh_cells 16,4", "-scene_interleave -adaptor_threshold 0.2")
+    assert record["sweeps"] == record["cycles"] > 3
+
+
+def test_ranks_without_a_cell():
+    """Bodies of one cell, and of two triangles, that are never split, or split until every rank has some"""
+    tiny = ("-lower_mesh_cells 1,1 -upper_mesh_cells 1,1", CHEAP, "-snes_ddneumann_gamma 0.25")
+    record = check_ranks(*tiny, "-adaptor_max_level 0", expect=3)
+    assert record["body.lower.cells"] == 1 and record["body.upper.cells"] == 2
+    record = check_ranks(*tiny, "-adaptor_bodies lower,upper -adaptor_max_level 3 -estimator_type zz", expect=3)
+    assert record["body.lower.cells"] > 8 and record["body.upper.cells"] > 8
+
+
+def test_accelerated_loops_and_iterative_solvers():
+    fixed = "-upper_mesh_shape quad -upper_mesh_cells 32,8 -lower_mesh_cells 32,8 -adaptor_max_level 0"
+    check_ranks(fixed, CHEAP, "-snes_type anderson -npc_snes_type ddneumann -npc_snes_max_it 1", ranks=(3,), expect=3)
+    one, two = (run(LAYERS, fixed, CHEAP, "-lower_pc_type hypre -lower_ksp_rtol 1e-13", ranks=n, expect=3) for n in (1, 2))
+    assert one["sweeps"] == two["sweeps"] and abs(one["pair.mid.force"] / two["pair.mid.force"] - 1) < 1e-8
+
+
+def test_a_run_repeats_itself_to_the_last_digit():
+    for n in (1, 3):
+        runs = [run(LAYERS, "-upper_mesh_cells 16,4 -adaptor_threshold 0.2", CHEAP, ranks=n) for _ in range(2)]
+        one, other = ({key: value for key, value in record.items() if not key.startswith(TIMES)} for record in runs)
+        assert one == other, [(key, one[key], other[key]) for key in one if one[key] != other[key]]
