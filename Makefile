@@ -65,7 +65,7 @@ $(B)/bin $(B)/lib $(B)/tests:
 	@mkdir -p $@
 
 # --- what is done with it -----------------------------------------------------------------------------------------------------
-LAYERS = -options_file examples/layers/layers.yml -record out/layers.record -record_csv out/layers.csv \
+LAYERS = examples/layers/layers.yml -record out/layers.record -record_csv out/layers.csv \
          -output out/layers.xdmf -output_profile out/layers_profile.csv
 run: all
 	@mkdir -p out

@@ -47,13 +47,25 @@ def words(options):
         yield from shlex.split(option) if option.startswith("-") else [option]
 
 
-def run(scene, *options, ranks=1, expect=0, limit=500):
+def execute(command, limit):
+    """Runs a command in the top folder. One that hangs is ended so that mpiexec, too, can end its ranks, and is an error."""
+    process = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, stdin=subprocess.DEVNULL)
+    try:
+        stdout, stderr = process.communicate(timeout=limit)
+    except subprocess.TimeoutExpired:
+        process.terminate()
+        stdout, stderr = process.communicate()
+        raise AssertionError(f"{shlex.join(command)}\nstopped after {limit} s\n{stdout.decode()}{stderr.decode()}") from None
+    return subprocess.CompletedProcess(command, process.returncode, stdout.decode(), stderr.decode())
+
+
+def run(scene, *options, ranks=1, expect=0, limit=250):
     """Runs abut on a scene file (or None) with further options; the exit status must be `expect` (None: any)"""
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "record")
         command = ["mpiexec", "-n", str(ranks)] if ranks > 1 else []
         command += [PROGRAM] + (["-options_file", str(scene)] if scene else []) + list(words(options)) + ["-record", path]
-        result = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=limit)
+        result = execute(command, limit)
         record = Record(read_record(path) if os.path.exists(path) else {})
     record.stdout, record.stderr, record.status = result.stdout, result.stderr, result.returncode
     assert expect is None or record.status == expect, (

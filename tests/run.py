@@ -83,6 +83,8 @@ def run(test, limit):
     try:
         output, status = process.communicate(timeout=limit)[0], process.returncode
     except subprocess.TimeoutExpired:
+        os.killpg(process.pid, signal.SIGTERM)  # mpiexec ends its ranks, which are no children of ours
+        time.sleep(2)
         os.killpg(process.pid, signal.SIGKILL)
         output, status = process.communicate()[0] + f"\nstopped after {limit} s\n".encode(), -signal.SIGKILL
     return name, status, time.time() - start, output.decode(errors="replace")

@@ -39,23 +39,26 @@ PetscErrorCode AbutBodyCreateSolver_Private(AbutBody body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BoomerAMG keeps the numbering of the unknowns of its first matrix, and reads beyond its end when a larger one follows: each mesh gets a
-   new one. At our strong threshold it takes 8 iterations where hypre's own 0.25 takes 94. */
-static PetscErrorCode AbutBodyRenewHypre_Private(AbutBody body)
+/* Multigrid keeps what belongs to its first matrix (BoomerAMG the numbering of the unknowns, GAMG the sizes of its levels) and goes astray when a larger one
+   follows: each mesh gets a new preconditioner. At our strong threshold BoomerAMG takes 8 iterations where hypre's own 0.25 takes 94. */
+static PetscErrorCode AbutBodyRenewPreconditioner_Private(AbutBody body)
 {
-  char      name[256];
-  PetscBool hypre, given;
+  char      name[256], type[64];
+  PetscBool factor, given = PETSC_TRUE;
+  PCType    present;
   PC        pc;
 
   PetscFunctionBegin;
   PetscCall(KSPGetPC(body->ksp, &pc));
-  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCHYPRE, &hypre));
-  if (!hypre) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscObjectTypeCompareAny((PetscObject)pc, &factor, PCCHOLESKY, PCLU, ""));
+  if (factor) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PCGetType(pc, &present));
+  PetscCall(PetscStrncpy(type, present, sizeof(type)));
   PetscCall(PetscSNPrintf(name, sizeof(name), "-%spc_hypre_boomeramg_strong_threshold", ((PetscObject)body)->prefix));
-  PetscCall(PetscOptionsHasName(NULL, NULL, name, &given));
+  if (!strcmp(type, PCHYPRE)) PetscCall(PetscOptionsHasName(NULL, NULL, name, &given));
   if (!given) PetscCall(PetscOptionsSetValue(NULL, name, "0.5"));
   PetscCall(PCSetType(pc, PCNONE));
-  PetscCall(PCSetType(pc, PCHYPRE));
+  PetscCall(PCSetType(pc, type));
   PetscCall(PCSetFromOptions(pc));
   if (!given) PetscCall(PetscOptionsClearValue(NULL, name));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -83,7 +86,7 @@ PetscErrorCode AbutBodyChooseSolver_Private(AbutBody body, PetscInt n, PetscBool
     }
     PetscCall(KSPSetFromOptions(body->ksp));
   }
-  PetscCall(AbutBodyRenewHypre_Private(body));
+  PetscCall(AbutBodyRenewPreconditioner_Private(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -76,7 +76,7 @@ static PetscErrorCode AbutSceneEstimate_Private(AbutScene scene, PetscBool *mark
     if (!scene->adaptor) continue;
     PetscCall(AbutBodyGetMesh(scene->body[b], &mesh));
     PetscCall(AbutMeshGetTopology(mesh, &t));
-    PetscCall(PetscMalloc1(t->ncells, &marks[b]));
+    PetscCall(PetscMalloc1(t->ncells + 1, &marks[b])); /* not NULL, which says that the mesh stays, on a rank without cells either */
     PetscCall(AbutAdaptorMark(scene->adaptor, scene->body[b], scene->eta[b], marks[b], &n, &one));
     *nmarked += n;
     if (!n) PetscCall(PetscFree(marks[b])); /* this body's mesh stays */
@@ -92,7 +92,8 @@ static PetscErrorCode AbutSceneAdapt_Private(AbutScene scene, PetscBool *const m
   if (scene->snes) {
     PetscCall(AbutInterfaceKeepTrace(scene->iface, scene->x));
     PetscCall(VecDestroy(&scene->x));
-    PetscCall(SNESReset(scene->snes));
+    PetscCall(SNESDestroy(&scene->snes)); /* a new solver: what the old one remembers belongs to the old mesh, and not every type forgets it in SNESReset() */
+    PetscCall(AbutSceneSolverFromOptions_Private(scene));
   }
   for (PetscInt b = 0; b < scene->nbodies; ++b) {
     AbutMesh mesh;

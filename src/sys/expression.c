@@ -63,7 +63,7 @@ static PetscErrorCode AbutExpressionParse_Private(AbutExpression e)
   (*AbutMuParser.defineconst)(e->formula, "pi", PETSC_PI);
   (*AbutMuParser.setexpr)(e->formula, e->text);
   (void)(*AbutMuParser.eval)(e->formula);
-  AbutCheckInput(!(*AbutMuParser.error)(e->formula), e->comm, "%s: \"%s\" is not a formula in x and y: %s for example 1e-3*x^2", e->key, e->text, (*AbutMuParser.errormsg)(e->formula));
+  AbutCheckInput(!(*AbutMuParser.error)(e->formula), e->comm, "%s: \"%s\" is not a formula in x and y (%s); give for example 1e-3*x^2", e->key, e->text, (*AbutMuParser.errormsg)(e->formula));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

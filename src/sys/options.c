@@ -40,11 +40,13 @@ PetscErrorCode AbutOptionsString(AbutOptionItems PetscOptionsObject, const char 
 /* Splits "a, b, c" into numbers and demands exactly n of them */
 static PetscErrorCode AbutOptionsNumbers_Private(AbutOptionItems PetscOptionsObject, const char opt[], const char text[], PetscInt n, PetscReal value[], PetscBool integer, PetscBool *set)
 {
-  char        given[1024] = "", key[256], *end;
+  char        given[1024] = "", key[256], kind[64] = "a number", *end;
   const char *at = given;
   PetscBool   flg;
 
   PetscFunctionBegin;
+  if (n > 1) PetscCall(PetscSNPrintf(kind, sizeof(kind), "%" PetscInt_FMT " %snumbers separated by commas", n, integer ? "whole " : ""));
+  else if (integer) PetscCall(PetscStrncpy(kind, "a whole number", sizeof(kind)));
   PetscCall(AbutOptionsKey_Private(PetscOptionsObject, opt, key, sizeof(key)));
   PetscCall(PetscOptionsString(opt, text, NULL, given, given, sizeof(given), &flg));
   if (set) *set = flg;
@@ -55,8 +57,7 @@ static PetscErrorCode AbutOptionsNumbers_Private(AbutOptionItems PetscOptionsObj
 
     while (*end == ' ') ++end;
     AbutCheckInput(end != at && *end == (last ? '\0' : ',') && PetscIsNormalReal(v ? v : 1.) && (!integer || (v == (double)(PetscInt)v)), PetscOptionsObject->comm,
-                   "%s: \"%s\" is not %" PetscInt_FMT " %snumber%s; give %s", key, given, n, integer ? "whole " : "", n > 1 ? "s separated by commas" : "",
-                   n > 1 ? text : (integer ? "for example 8" : "for example 2.1e5"));
+                   "%s: \"%s\" is not %s (%s)", key, given, kind, text);
     value[i] = v;
     at       = end + 1;
   }
@@ -209,6 +210,7 @@ PetscErrorCode AbutOptionsEnum(AbutOptionItems PetscOptionsObject, const char op
       *value = i;
       PetscFunctionReturn(PETSC_SUCCESS);
     }
+    if (!names[i][0]) continue; /* the key alone */
     PetscCall(PetscStrlcat(all, i ? ", " : "", sizeof(all)));
     PetscCall(PetscStrlcat(all, names[i], sizeof(all)));
   }
