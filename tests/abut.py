@@ -48,14 +48,17 @@ def words(options):
 
 
 def execute(command, limit):
-    """Runs a command in the top folder. One that hangs is ended so that mpiexec, too, can end its ranks, and is an error."""
-    process = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, stdin=subprocess.DEVNULL)
-    try:
-        stdout, stderr = process.communicate(timeout=limit)
-    except subprocess.TimeoutExpired:
-        process.terminate()
-        stdout, stderr = process.communicate()
-        raise AssertionError(f"{shlex.join(command)}\nstopped after {limit} s\n{stdout.decode()}{stderr.decode()}") from None
+    """Runs a command in the top folder, with a temporary folder of its own, where MPI keeps its session. One that hangs is ended so that mpiexec, too, can end
+    its ranks, and is an error."""
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
+        pipe = subprocess.PIPE
+        process = subprocess.Popen(command, cwd=ROOT, stdout=pipe, stderr=pipe, stdin=subprocess.DEVNULL, env={**os.environ, "TMPDIR": folder})
+        try:
+            stdout, stderr = process.communicate(timeout=limit)
+        except subprocess.TimeoutExpired:
+            process.terminate()
+            stdout, stderr = process.communicate()
+            raise AssertionError(f"{shlex.join(command)}\nstopped after {limit} s\n{stdout.decode()}{stderr.decode()}") from None
     return subprocess.CompletedProcess(command, process.returncode, stdout.decode(), stderr.decode())
 
 

@@ -7,7 +7,7 @@ Three kinds of tests:
   tests/*.sh, tests/*/test_X.sh   fails by its exit status, is skipped by 77
 Each runs in a process of its own, from the top folder, with a time limit; what a failed one said is printed.
 """
-import argparse, concurrent.futures, glob, importlib.util, os, re, signal, subprocess, sys, time, traceback, unittest
+import argparse, concurrent.futures, glob, importlib.util, os, re, signal, subprocess, sys, tempfile, time, traceback, unittest
 
 SELF = os.path.abspath(__file__)
 ROOT = os.path.dirname(os.path.dirname(SELF))
@@ -74,19 +74,28 @@ def call(source, name):
 
 
 def run(test, limit):
+    """With a temporary folder of its own: there MPI keeps its session, which two programs must not share"""
     name, command = test
     start = time.time()
-    try:
-        process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, start_new_session=True)
-    except OSError as error:
-        return name, error.errno, 0.0, str(error)
-    try:
-        output, status = process.communicate(timeout=limit)[0], process.returncode
-    except subprocess.TimeoutExpired:
-        os.killpg(process.pid, signal.SIGTERM)  # mpiexec ends its ranks, which are no children of ours
-        time.sleep(2)
-        os.killpg(process.pid, signal.SIGKILL)
-        output, status = process.communicate()[0] + f"\nstopped after {limit} s\n".encode(), -signal.SIGKILL
+    with tempfile.TemporaryDirectory(prefix="abut_", ignore_cleanup_errors=True) as folder:
+        try:
+            process = subprocess.Popen(
+                command,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                stdin=subprocess.DEVNULL,
+                start_new_session=True,
+                env={**os.environ, "TMPDIR": folder},
+            )
+        except OSError as error:
+            return name, error.errno, 0.0, str(error)
+        try:
+            output, status = process.communicate(timeout=limit)[0], process.returncode
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGTERM)  # mpiexec ends its ranks, which are no children of ours
+            time.sleep(2)
+            os.killpg(process.pid, signal.SIGKILL)
+            output, status = process.communicate()[0] + f"\nstopped after {limit} s\n".encode(), -signal.SIGKILL
     return name, status, time.time() - start, output.decode(errors="replace")
 
 

@@ -1,7 +1,7 @@
 """Bad input ends in one line on standard error and exit status 1, before any mesh is made, and no file is touched. The lines are in golden.txt."""
-import concurrent.futures, os, random, re, shlex, tempfile
+import concurrent.futures, os, random, re, shlex, tempfile, unittest
 
-from abut import BUILD, LAYERS, PROGRAM, ROOT, execute
+from abut import BUILD, LAYERS, PROGRAM, execute
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 LINE = "abut: "
@@ -67,7 +67,7 @@ def complain(words, expected, ranks=1):
 def check(cases, ranks=1):
     with concurrent.futures.ThreadPoolExecutor(2 if ranks == 1 else 1) as pool:
         complaints = [text for text in pool.map(lambda case: complain(*case, ranks), cases) if text]
-    assert not complaints, f"{len(complaints)} of {len(cases)}:\n" + "\n".join(complaints)
+    assert not complaints, f"{len(complaints)} of {len(cases)}:\n" + "\n".join(complaints[:5])
 
 
 def test_every_bad_input_ends_in_its_line():
@@ -117,7 +117,7 @@ def check_scenes(texts, kind):
 
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         complaints = [text for text in pool.map(one, texts) if text]
-    assert not complaints, f"{len(complaints)} of {len(texts)}:\n" + "\n".join(complaints)
+    assert not complaints, f"{len(complaints)} of {len(texts)}:\n" + "\n".join(complaints[:5])
 
 
 def small_scene():
@@ -129,7 +129,8 @@ def small_scene():
 
 def test_a_scene_that_is_cut_off():
     text = small_scene()
-    cuts = sorted(set(range(0, len(text), 40)) | {text.index(part) + 3 for part in ('"0,0', '"lower', "young:", "{u1", "pairs:", 'gap: "', "0.05}", "ddneumann,")})
+    parts = ('"0,0', '"upper', "young:", "{u1", "pairs:", 'gap: "', "0.05}", "ddneumann,")
+    cuts = sorted(set(range(0, len(text), 40)) | {text.index(part) + 3 for part in parts})
     check_scenes([text[:cut] for cut in cuts], "yml")
 
 
@@ -150,17 +151,8 @@ def test_garbage_after_a_good_scene():
 
 def test_a_scene_that_is_there_but_cannot_be_read():
     if os.geteuid() == 0:
-        return  # root reads everything
+        raise unittest.SkipTest("root reads everything")
     with tempfile.TemporaryDirectory() as folder:
         write(folder, "scene.yml", small_scene())
         os.chmod(f"{folder}/scene.yml", 0)
         assert ends_well(execute([PROGRAM, f"{folder}/scene.yml"], 60))
-
-
-def test_the_program_is_where_it_is_started_from():
-    """A scene, a plugin and the program itself may be given by path from any folder"""
-    with tempfile.TemporaryDirectory() as folder:
-        write(folder, "scene.yml", small_scene())
-        result = execute(["sh", "-c", f"cd {folder} && {PROGRAM} scene.yml -snes_max_it 2 -record run.record && cat run.record; test -e run.record"], 60)
-        assert result.returncode == 0 and "verdict: max_iterations" in result.stdout, result.stderr
-    assert not os.path.exists(os.path.join(ROOT, "run.record"))
