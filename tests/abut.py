@@ -54,12 +54,14 @@ def execute(command, limit):
         pipe = subprocess.PIPE
         process = subprocess.Popen(command, cwd=ROOT, stdout=pipe, stderr=pipe, stdin=subprocess.DEVNULL, env={**os.environ, "TMPDIR": folder})
         try:
-            stdout, stderr = process.communicate(timeout=limit)
+            output = process.communicate(timeout=limit)
         except subprocess.TimeoutExpired:
             process.terminate()
-            stdout, stderr = process.communicate()
-            raise AssertionError(f"{shlex.join(command)}\nstopped after {limit} s\n{stdout.decode()}{stderr.decode()}") from None
-    return subprocess.CompletedProcess(command, process.returncode, stdout.decode(), stderr.decode())
+            output = process.communicate()
+            limit = None
+    stdout, stderr = (text.decode(errors="replace") for text in output)
+    assert limit, f"{shlex.join(command)}\ndid not end by itself\n{stdout}{stderr}"
+    return subprocess.CompletedProcess(command, process.returncode, stdout, stderr)
 
 
 def run(scene, *options, ranks=1, expect=0, limit=250):

@@ -138,6 +138,10 @@ PetscErrorCode AbutInitialize(int *argc, char ***args, const char help[])
 @*/
 PetscErrorCode AbutFinalize(void)
 {
-  PetscCall(PetscPopErrorHandler()); /* no PetscFunctionBegin: PetscFinalize() destroys the stack this function would stand on */
+  PetscBool given; /* no PetscFunctionBegin: PetscFinalize() destroys the stack this function would stand on */
+
+  PetscCall(PetscPopErrorHandler());
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-options_left", &given));
+  if (!given) PetscCall(PetscOptionsSetValue(NULL, "-options_left", "no")); /* AbutOptionsCheckAllRead() has said it, in one line */
   return PetscFinalize();
 }

@@ -177,8 +177,10 @@ def test_no_gap_anywhere():
     """Two blocks: p = closure / (theta + C), all nodes in contact from every start"""
     for c, start in ((0.5, "zero"), (0.05, "winkler"), (0.05, "nocontact"), (0.05, "zero"), (0.005, "winkler"), (0.005, "nocontact")):
         exact = 1e-3 / (c / YOUNG + 2 * (1 - NU**2) / YOUNG)
-        record = run(None, layers(4, c, closure=1e-3, gap=0), f"-snes_ddneumann_start {start}")
-        assert near(record["pair.mid.pressure_max"], exact, 1e-7) and near(record["pair.mid.force"], 4 * exact, 1e-7), (c, start)
+        # the pressures magnify the round-off of the traces by C/theta, 364 at c = 0.005: 1e-8 is then within reach of some builds of MUMPS only
+        rtol = 1e-7 if c < 0.05 else 1e-8
+        record = run(None, layers(4, c, closure=1e-3, gap=0), f"-snes_ddneumann_start {start} -snes_rtol {rtol}")
+        assert near(record["pair.mid.pressure_max"], exact, 10 * rtol) and near(record["pair.mid.force"], 4 * exact, 10 * rtol), (c, start)
         assert record["pair.mid.active"] == 17 and near(record["pair.mid.contact_length"], 4, 1e-9)
         check_finite(record)
 
