@@ -48,8 +48,8 @@ def words(options):
 
 
 def execute(command, limit):
-    """Runs a command in the top folder, with a temporary folder of its own, where MPI keeps its session. One that hangs is ended so that mpiexec, too, can end
-    its ranks, and is an error."""
+    """Runs a command in the top folder, with a temporary folder of its own, where MPI keeps its session. One that hangs is ended so that
+    mpiexec, too, can end its ranks, and is an error."""
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         pipe = subprocess.PIPE
         process = subprocess.Popen(command, cwd=ROOT, stdout=pipe, stderr=pipe, stdin=subprocess.DEVNULL, env={**os.environ, "TMPDIR": folder})

@@ -13,8 +13,9 @@ SELF = os.path.abspath(__file__)
 ROOT = os.path.dirname(os.path.dirname(SELF))
 SKIPPED = 77
 
-# MPI as root, on fewer cores than ranks, inside one machine, for Open MPI 4 and 5, without a daemon that outlives a run on one rank by a
-# second, and without a look for networks, which takes 0.2 s; one thread a rank. Ranks that wait yield their core, which others may need, and what is left of a run that failed ends at once.
+# MPI as root, on fewer cores than ranks, inside one machine, for Open MPI 4 and 5; without a daemon that outlives a run on one rank by a
+# second, and without a look for networks, which takes 0.2 s; ranks that wait yield their core, which others may need; what is left of a
+# run that failed ends at once; one thread a rank
 MPI = {
     "OMPI_ALLOW_RUN_AS_ROOT": "1",
     "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",

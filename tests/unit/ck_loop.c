@@ -1,5 +1,6 @@
-/* The map of the interface trace on two blocks pressed evenly, where the loop is a scalar recurrence: with C = sum of H(1-nu^2)/E and the approach delta
-   the penetration d of a sweep's trace obeys d <- (1 - gamma/gamma_opt) d + gamma delta, gamma_opt = 1/(1 + C/theta), on any meshes. */
+/* The map of the interface trace on two blocks pressed evenly, where the loop is a scalar recurrence: with C = sum of H(1-nu^2)/E and the
+   approach delta the penetration d of a sweep's trace obeys d <- (1 - gamma/gamma_opt) d + gamma delta, gamma_opt = 1/(1 + C/theta), on any
+   meshes. */
 #include "ck_box.h"
 #include <abutscene.h>
 
@@ -8,10 +9,11 @@
 #define NU     0.3
 #define LENGTH 4.
 
-static const char blocks[] = "-scene_bodies lower,upper -scene_pairs mid -lower_mesh_box 0,0,4,1 -lower_mesh_cells 8,2 -lower_material_young 2.1e5 "
-                             "-lower_material_poisson 0.3 -lower_bc_left_u1 0 -lower_bc_bottom_u2 0 -upper_mesh_box 0,1,4,2 -upper_mesh_cells 6,2 "
-                             "-upper_mesh_shape triangle -upper_material_young 2.1e5 -upper_material_poisson 0.3 -upper_bc_left_u1 0 -upper_bc_top_u2 -1e-3 "
-                             "-mid_pair_bodies upper,lower -mid_pair_sides bottom,top -mid_pair_gap 0";
+static const char blocks
+  [] = "-scene_bodies lower,upper -scene_pairs mid -lower_mesh_box 0,0,4,1 -lower_mesh_cells 8,2 -lower_material_young 2.1e5 "
+       "-lower_material_poisson 0.3 -lower_bc_left_u1 0 -lower_bc_bottom_u2 0 -upper_mesh_box 0,1,4,2 -upper_mesh_cells 6,2 "
+       "-upper_mesh_shape triangle -upper_material_young 2.1e5 -upper_material_poisson 0.3 -upper_bc_left_u1 0 -upper_bc_top_u2 -1e-3 "
+       "-mid_pair_bodies upper,lower -mid_pair_sides bottom,top -mid_pair_gap 0";
 
 static const PetscReal C = 2. * (1. - NU * NU) / YOUNG;
 
@@ -191,7 +193,8 @@ START_TEST(a_loop_from_zero_ends_at_the_exact_pressure)
   OpenPenalty(penalties[_i]);
   CkOk(AbutInterfaceComputeStart(iface, ABUT_START_ZERO, x));
   ck_assert_double_eq(Pressure(), 0.);
-  CkOk(PetscSNPrintf(options, sizeof(options), "-try_snes_type anderson -try_snes_rtol 1e-11 -try_snes_anderson_beta %g", (double)(2. / (2. + C / theta))));
+  CkOk(PetscSNPrintf(options, sizeof(options), "-try_snes_type anderson -try_snes_rtol 1e-11 -try_snes_anderson_beta %g",
+                     (double)(2. / (2. + C / theta))));
   ck_assert_int_gt(Solve(options), 0);
   ck_assert_double_eq_tol(Pressure(), exact, 1e-8 * exact);
   CkOk(AbutInterfaceGetPairState(iface, 0, &state));
