@@ -188,6 +188,7 @@ PetscErrorCode AbutBodySetUp(AbutBody body)
   PetscCall(AbutBodyAssemble_Private(body));
   PetscCall(AbutBodyChooseSolver_Private(body, 2 * t->nglobal, PETSC_FALSE));
   PetscCall(KSPSetOperators(body->ksp, body->A, body->A));
+  PetscCall(AbutBodyGiveFactorRoom_Private(body));
   body->generation = generation;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

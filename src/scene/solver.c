@@ -21,11 +21,11 @@ static const char *const AbutUnfitTypes[] = {SNESNGS, SNESCOMPOSITE, SNESSHELL, 
 static PetscErrorCode AbutSceneReadSolver_Private(AbutScene scene)
 {
   MPI_Comm comm = PetscObjectComm((PetscObject)scene);
-  PetscInt max_it;
+  PetscInt max_it = 0;
 
   PetscFunctionBegin;
   AbutCallOptions(comm, "snes_*", SNESSetFromOptions(scene->snes));
-  PetscCall(SNESGetTolerances(scene->snes, NULL, NULL, NULL, &max_it, NULL));
+  PetscCall(PetscOptionsGetInt(NULL, NULL, "-snes_max_it", &max_it, NULL)); /* the SNES of PETSc 3.22 takes -1 for "the default" */
   AbutCheckInput(max_it >= 0, comm, "snes_max_it: %" PetscInt_FMT "; give a number from 0 up, for example 10000", max_it);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -77,10 +77,10 @@ static Errors Solve(PetscInt n, AbutShape shape)
   PetscInt          number, status;
   const PetscReal  *p;
 
-  /* of PETSc's accelerators the one that has converged for small theta whatever the mesh, in some hundreds of sweeps */
+  /* found by trial: at so small a theta every accelerator of PETSc fails on some mesh or version, this one on none of those met here */
   CkOk(PetscSNPrintf(text, sizeof(text),
                      "-scene_bodies lower,upper -scene_pairs mid -mid_pair_bodies lower,upper -mid_pair_sides top,bottom "
-                     "-mid_pair_gap %.16g*x^2 -mid_pair_theta %.16g -snes_type ngmres -snes_ngmres_m 20 "
+                     "-mid_pair_gap %.16g*x^2 -mid_pair_theta %.16g -snes_type ngmres -snes_ngmres_m 10 "
                      "-snes_ngmres_select_type linesearch -npc_snes_type ddneumann -npc_snes_max_it 1",
                      CURVE, THETA));
   for (PetscInt b = 0; b < 2; ++b) {

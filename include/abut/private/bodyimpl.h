@@ -48,6 +48,7 @@ PETSC_INTERN PetscErrorCode AbutBodyAssemble_Private(AbutBody);
 PETSC_INTERN PetscErrorCode AbutCellStiffness_Private(AbutBody, PetscInt, PetscReal[64]);
 PETSC_INTERN PetscErrorCode AbutBodyCreateSolver_Private(AbutBody);
 PETSC_INTERN PetscErrorCode AbutBodyChooseSolver_Private(AbutBody, PetscInt, PetscBool);
+PETSC_INTERN PetscErrorCode AbutBodyGiveFactorRoom_Private(AbutBody);
 PETSC_INTERN PetscErrorCode AbutBodyReset_Private(AbutBody);
 PETSC_INTERN PetscErrorCode AbutBodyBoundarySetUp_Private(AbutBody);
 PETSC_INTERN PetscErrorCode AbutBodyBoundaryReset_Private(AbutBody);
