@@ -78,7 +78,7 @@ PETSC_EXTERN PetscErrorCode AbutBodyGetSupportDisplacement(AbutBody, const Petsc
    Element i starts at node i and ends at the next node of its contour (the first one after the last). Outer contours run counter-clockwise.
    Displacements in the length unit of the scene, tractions in its stress unit, forces in stress times length. */
 typedef struct {
-  PetscInt           n;         /* boundary elements, and as many nodes */
+  PetscInt           n; /* boundary elements, and as many nodes */
   PetscInt           ncontours;
   PetscInt          *contour;   /* [ncontours+1] first element of each contour, then n */
   PetscInt          *end;       /* [n] end node of each element: the start node of the next one of its contour */
@@ -86,9 +86,10 @@ typedef struct {
   PetscReal         *u;         /* [2*n] displacement there */
   PetscInt          *side;      /* [n] side number of the element */
   AbutConditionType *condition; /* [2*n] what is known on the element, per component */
-  PetscReal         *traction;  /* [4*n] given traction: (t1,t2) at the start, (t1,t2) at the end; the L2 projection of the prescribed one; 0 where none is given */
-  PetscReal         *reaction;  /* [2*n] nodal forces by which prescribed displacements hold the body, K u - f, 0 elsewhere */
-  PetscReal         *contact;   /* [2*n] nodal contact forces on the body */
+  PetscReal *
+    traction; /* [4*n] given traction: (t1,t2) at the start, (t1,t2) at the end; the L2 projection of the prescribed one; 0 where none is given */
+  PetscReal *reaction; /* [2*n] nodal forces by which prescribed displacements hold the body, K u - f, 0 elsewhere */
+  PetscReal *contact;  /* [2*n] nodal contact forces on the body */
 } AbutBoundary;
 PETSC_EXTERN PetscErrorCode AbutBodyGetBoundary(AbutBody, AbutBoundary **);
 PETSC_EXTERN PetscErrorCode AbutBoundaryDestroy(AbutBoundary **);

@@ -68,12 +68,12 @@ PETSC_EXTERN PetscErrorCode AbutMeshInvertCell(AbutMesh, PetscInt, const PetscRe
 
 /* The paper's measures of a mesh, Definitions 1-3, eq. (22) and Lemma 1; the same on all ranks */
 typedef struct {
-  PetscReal h_fe;           /* largest upper diameter of the cells */
-  PetscReal h_be;           /* largest length of the boundary elements */
-  PetscReal h_min;          /* smallest side of a cell */
-  PetscReal regularity;     /* largest D_e/d_e: upper over lower diameter */
-  PetscReal ratio;          /* h_be/h_fe, the constant of eq. (22) */
-  PetscBool lemma;          /* a cell of largest upper diameter has a side on the boundary: Lemma 1's hypothesis */
+  PetscReal h_fe;       /* largest upper diameter of the cells */
+  PetscReal h_be;       /* largest length of the boundary elements */
+  PetscReal h_min;      /* smallest side of a cell */
+  PetscReal regularity; /* largest D_e/d_e: upper over lower diameter */
+  PetscReal ratio;      /* h_be/h_fe, the constant of eq. (22) */
+  PetscBool lemma;      /* a cell of largest upper diameter has a side on the boundary: Lemma 1's hypothesis */
   PetscInt  level_max;
 } AbutMeshMeasures;
 PETSC_EXTERN PetscErrorCode AbutMeshGetMeasures(AbutMesh, AbutMeshMeasures *);

@@ -7,15 +7,20 @@ Exit status: 0 converged and consistent, 1 bad input or a file that cannot be wr
 static PetscErrorCode AbutRun(PetscInt *status)
 {
   AbutScene scene;
+  PetscBool help;
 
   PetscFunctionBegin;
   PetscCall(AbutSceneCreate(PETSC_COMM_WORLD, &scene));
   PetscCall(AbutSceneSetFromOptions(scene));
-  PetscCall(AbutSceneSetUp(scene));
-  PetscCall(AbutSceneSolve(scene));
-  PetscCall(AbutSceneGetExitStatus(scene, status));
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-help", &help));
+  *status = 0;
+  if (!help) { /* -help has listed the keys of what the scene names, and that was all it asked for */
+    PetscCall(AbutSceneSetUp(scene));
+    PetscCall(AbutSceneSolve(scene));
+    PetscCall(AbutSceneGetExitStatus(scene, status));
+  }
   PetscCall(AbutSceneDestroy(&scene));
-  PetscCall(AbutOptionsCheckAllRead(PETSC_COMM_WORLD, PETSC_TRUE));
+  if (!help) PetscCall(AbutOptionsCheckAllRead(PETSC_COMM_WORLD, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

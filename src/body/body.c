@@ -80,8 +80,10 @@ PetscErrorCode AbutBodySetMaterial(AbutBody body, PetscReal young, PetscReal poi
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, ABUTBODY_CLASSID, 1);
-  AbutCheckInput(young > 0., comm, "%s_material_young: %g is not a modulus; give a positive number, for example 2.1e5", name, (double)young);
-  AbutCheckInput(poisson > -1. && poisson < 0.5, comm, "%s_material_poisson: %g; plane strain needs -1 < nu < 0.5, for example 0.3", name, (double)poisson);
+  AbutCheckInput(young > 0., comm, "%s_material_young: %g is not a modulus; give a positive number, for example 2.1e5", name,
+                 (double)young);
+  AbutCheckInput(poisson > -1. && poisson < 0.5, comm, "%s_material_poisson: %g; plane strain needs -1 < nu < 0.5, for example 0.3", name,
+                 (double)poisson);
   body->young      = young;
   body->poisson    = poisson;
   body->lambda     = young * poisson / ((1. + poisson) * (1. - 2. * poisson));
@@ -142,8 +144,8 @@ PetscErrorCode AbutBodySetFromOptions(AbutBody body)
   PetscCall(AbutOptionsReal(PetscOptionsObject, "-material_poisson", "Poisson's ratio", &poisson, &haspoisson));
   PetscCall(AbutBodySetConditionsFromOptions_Private(body, PetscOptionsObject, twice, sizeof(twice)));
   PetscOptionsEnd();
-  AbutCheckInput(body->young > 0. || (hasyoung && haspoisson), comm, "%s_material_%s: missing; give %s", name, hasyoung ? "poisson" : "young",
-                 hasyoung ? "Poisson's ratio, for example 0.3" : "Young's modulus, for example 2.1e5");
+  AbutCheckInput(body->young > 0. || (hasyoung && haspoisson), comm, "%s_material_%s: missing; give %s", name,
+                 hasyoung ? "poisson" : "young", hasyoung ? "Poisson's ratio, for example 0.3" : "Young's modulus, for example 2.1e5");
   AbutCheckInput(!twice[0], comm, "%s: the same component also has its displacement given; give one of the two", twice);
   PetscCall(AbutBodySetMaterial(body, young, poisson));
   PetscCall(PetscSNPrintf(solver, sizeof(solver), "%s_ksp_*, %s_pc_*", name, name));
@@ -170,7 +172,8 @@ PetscErrorCode AbutBodySetUp(AbutBody body)
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, ABUTBODY_CLASSID, 1);
-  PetscCheck(body->young > 0., PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call AbutBodySetMaterial() or AbutBodySetFromOptions() first");
+  PetscCheck(body->young > 0., PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE,
+             "Call AbutBodySetMaterial() or AbutBodySetFromOptions() first");
   if (body->generation < 0) PetscCall(AbutBodyCheck(body));
   PetscCall(AbutMeshSetUp(body->mesh));
   PetscCall(AbutMeshGetGeneration(body->mesh, &generation));
@@ -178,7 +181,8 @@ PetscErrorCode AbutBodySetUp(AbutBody body)
   PetscCall(AbutBodyReset_Private(body));
   PetscCall(AbutMeshGetTopology(body->mesh, &t));
   PetscCall(PetscCalloc1(2 * t->nvertices, &body->vertexu));
-  PetscCall(VecCreateGhostBlock(PetscObjectComm((PetscObject)body), 2, 2 * t->nowned, PETSC_DECIDE, t->nunknown - t->nowned, t->global + t->nowned, &body->u));
+  PetscCall(VecCreateGhostBlock(PetscObjectComm((PetscObject)body), 2, 2 * t->nowned, PETSC_DECIDE, t->nunknown - t->nowned,
+                                t->global + t->nowned, &body->u));
   PetscCall(AbutBodyCreateVec(body, &body->load));
   PetscCall(VecDuplicate(body->load, &body->lift));
   PetscCall(VecDuplicate(body->load, &body->contact));
@@ -264,14 +268,16 @@ PetscErrorCode AbutBodyView(AbutBody body, PetscViewer viewer)
   MatSolverType solver = NULL;
 
   PetscFunctionBegin;
-  PetscCall(PetscViewerASCIIPrintf(viewer, "body %s: Young's modulus %g, Poisson's ratio %g, plane strain\n", ((PetscObject)body)->name, (double)body->young, (double)body->poisson));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "body %s: Young's modulus %g, Poisson's ratio %g, plane strain\n", ((PetscObject)body)->name,
+                                   (double)body->young, (double)body->poisson));
   PetscCall(PetscViewerASCIIPushTab(viewer));
   if (body->generation >= 0) PetscCall(AbutMeshView(body->mesh, viewer));
   PetscCall(KSPGetType(body->ksp, &ksptype));
   PetscCall(KSPGetPC(body->ksp, &pc));
   PetscCall(PCGetType(pc, &pctype));
   if (body->A) PetscCall(PCFactorGetMatSolverType(pc, &solver));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "solver: %s with %s%s%s, chosen by %s\n", ksptype, pctype, solver ? " of " : "", solver ? solver : "", body->userksp ? "the user" : "size"));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "solver: %s with %s%s%s, chosen by %s\n", ksptype, pctype, solver ? " of " : "",
+                                   solver ? solver : "", body->userksp ? "the user" : "size"));
   PetscCall(PetscViewerASCIIPopTab(viewer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -3,7 +3,8 @@
 
 /* Boundary conditions (5), (6) of the paper, per component: prescribed displacement or traction of a named side */
 
-static PetscErrorCode AbutBodySetCondition_Private(AbutBody body, PetscInt side, PetscInt component, AbutConditionType type, AbutExpression value)
+static PetscErrorCode AbutBodySetCondition_Private(AbutBody body, PetscInt side, PetscInt component, AbutConditionType type,
+                                                   AbutExpression value)
 {
   AbutCondition *c = &body->condition[side][component];
 
@@ -34,7 +35,8 @@ PetscErrorCode AbutBodySetConditionsFromOptions_Private(AbutBody body, AbutOptio
 
         PetscCall(PetscSNPrintf(opt, sizeof(opt), "-bc_%s_%c%d", side, k ? 't' : 'u', (int)d + 1));
         PetscCall(PetscSNPrintf(key, sizeof(key), "%s%s", ((PetscObject)body)->prefix, opt + 1));
-        PetscCall(AbutOptionsString(PetscOptionsObject, opt, k ? "Traction of the side" : "Displacement of the side", text, sizeof(text), &given[k]));
+        PetscCall(AbutOptionsString(PetscOptionsObject, opt, k ? "Traction of the side" : "Displacement of the side", text, sizeof(text),
+                                    &given[k]));
         if (!given[k]) continue;
         if (k && given[0]) PetscCall(PetscStrncpy(twice, key, len));
         PetscCall(AbutExpressionCreate(PetscObjectComm((PetscObject)body), key, text, &value));
@@ -44,14 +46,16 @@ PetscErrorCode AbutBodySetConditionsFromOptions_Private(AbutBody body, AbutOptio
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode AbutBodySetFunction_Private(AbutBody body, const char side[], PetscInt component, AbutConditionType type, AbutPointFunction function, void *ctx)
+static PetscErrorCode AbutBodySetFunction_Private(AbutBody body, const char side[], PetscInt component, AbutConditionType type,
+                                                  AbutPointFunction function, void *ctx)
 {
   PetscInt       s;
   AbutExpression value;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, ABUTBODY_CLASSID, 1);
-  PetscCheck(component == 0 || component == 1, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_OUTOFRANGE, "Component %" PetscInt_FMT " is neither 0 nor 1", component);
+  PetscCheck(component == 0 || component == 1, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_OUTOFRANGE,
+             "Component %" PetscInt_FMT " is neither 0 nor 1", component);
   PetscCall(AbutMeshFindSide(body->mesh, ((PetscObject)body)->name, side, &s));
   PetscCall(AbutExpressionCreateFunction(function, ctx, &value));
   PetscCall(AbutBodySetCondition_Private(body, s, component, type, value));
@@ -157,7 +161,8 @@ PetscErrorCode AbutBodyGetCondition(AbutBody body, PetscInt side, PetscInt compo
 
 /* Moments of a prescribed traction against the two hat functions of an element side. The substitution s = z^3(10-15z+6z^2) crowds the points at the
    ends, where a pressure may have a root or a kink; polynomials up to degree 4 are still integrated exactly. */
-PetscErrorCode AbutBodyEdgeMoments_Private(AbutBody body, PetscInt side, PetscInt component, const PetscReal a[2], const PetscReal b[2], PetscReal m[2])
+PetscErrorCode AbutBodyEdgeMoments_Private(AbutBody body, PetscInt side, PetscInt component, const PetscReal a[2], const PetscReal b[2],
+                                           PetscReal m[2])
 {
   const AbutCondition *c      = &body->condition[side][component];
   const PetscReal      length = PetscSqrtReal(PetscSqr(b[0] - a[0]) + PetscSqr(b[1] - a[1]));
@@ -193,7 +198,8 @@ static PetscErrorCode AbutBodyLoad_Private(AbutBody body, const AbutMeshTopology
       if (body->condition[b->side[i]][d].type != ABUT_TRACTION || !body->condition[b->side[i]][d].value) continue;
       PetscCall(AbutBodyEdgeMoments_Private(body, b->side[i], d, b->x + 2 * i, b->x + 2 * b->end[i], m));
       for (PetscInt k = 0; k < 2; ++k)
-        if (vertex[k] >= t->firstowned && vertex[k] < t->firstowned + t->nowned) PetscCall(VecSetValue(body->load, 2 * vertex[k] + d, m[k], ADD_VALUES));
+        if (vertex[k] >= t->firstowned && vertex[k] < t->firstowned + t->nowned)
+          PetscCall(VecSetValue(body->load, 2 * vertex[k] + d, m[k], ADD_VALUES));
     }
   PetscCall(VecAssemblyBegin(body->load));
   PetscCall(VecAssemblyEnd(body->load));
@@ -272,10 +278,12 @@ static PetscErrorCode AbutBodyCheckHeld_Private(AbutBody body)
       }
     }
   for (PetscInt d = 0; d < 2; ++d)
-    AbutCheckInput(n[d], comm, "%s: nothing holds this body along %s; prescribe u%d on one of its sides, for example %s_bc_%s_u%d: 0", name, d ? "y" : "x", (int)d + 1, name, d ? "bottom" : "left", (int)d + 1);
+    AbutCheckInput(n[d], comm, "%s: nothing holds this body along %s; prescribe u%d on one of its sides, for example %s_bc_%s_u%d: 0", name,
+                   d ? "y" : "x", (int)d + 1, name, d ? "bottom" : "left", (int)d + 1);
   /* a rotation about some point leaves all prescribed components in peace exactly if the arms are constant in each component */
   AbutCheckInput(sum2 - sum[0] * sum[0] / n[0] - sum[1] * sum[1] / n[1] > 1e-10, comm,
-                 "%s: this body is free to turn; prescribe a displacement normal to a side of some length, for example %s_bc_bottom_u2: 0", name, name);
+                 "%s: this body is free to turn; prescribe a displacement normal to a side of some length, for example %s_bc_bottom_u2: 0",
+                 name, name);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -339,7 +347,8 @@ PetscErrorCode AbutBodyCheck(AbutBody body)
 
 .seealso: `AbutPairComputeWinkler()`
 @*/
-PetscErrorCode AbutBodyGetSupportDisplacement(AbutBody body, const PetscReal x[2], const PetscReal normal[2], PetscReal *value, PetscBool *found)
+PetscErrorCode AbutBodyGetSupportDisplacement(AbutBody body, const PetscReal x[2], const PetscReal normal[2], PetscReal *value,
+                                              PetscBool *found)
 {
   const PetscInt d = PetscAbsReal(normal[0]) > PetscAbsReal(normal[1]) ? 0 : 1, far = 2 * d + (normal[d] > 0. ? 0 : 1);
   PetscReal      lower[2], upper[2], foot[2] = {x[0], x[1]};

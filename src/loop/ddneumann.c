@@ -30,9 +30,11 @@ static PetscErrorCode SNESSetFromOptions_DDNeumann(SNES snes, AbutOptionItems Pe
   PetscFunctionBegin;
   PetscOptionsHeadBegin(PetscOptionsObject, "SNES ddneumann options");
   PetscCall(AbutOptionsReal(PetscOptionsObject, "-snes_ddneumann_gamma", "Relaxation", &dd->gamma, &set));
-  AbutCheckInput(!set || dd->gamma >= 0., PetscObjectComm((PetscObject)snes), "snes_ddneumann_gamma: %g; give a positive number, or 0 for 2/(2+C/theta)", (double)dd->gamma);
+  AbutCheckInput(!set || dd->gamma >= 0., PetscObjectComm((PetscObject)snes),
+                 "snes_ddneumann_gamma: %g; give a positive number, or 0 for 2/(2+C/theta)", (double)dd->gamma);
   PetscCall(AbutOptionsReal(PetscOptionsObject, "-snes_ddneumann_eps", "Relative change of the paper's stop test", &dd->eps, &set));
-  AbutCheckInput(!set || dd->eps > 0., PetscObjectComm((PetscObject)snes), "snes_ddneumann_eps: %g; give a positive number, for example 0.0015", (double)dd->eps);
+  AbutCheckInput(!set || dd->eps > 0., PetscObjectComm((PetscObject)snes),
+                 "snes_ddneumann_eps: %g; give a positive number, for example 0.0015", (double)dd->eps);
   PetscCall(AbutOptionsEnum(PetscOptionsObject, "-snes_ddneumann_stop", "Stop test", AbutStops, &dd->stop, NULL));
   PetscOptionsHeadEnd();
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -46,7 +48,9 @@ static PetscErrorCode SNESView_DDNeumann(SNES snes, PetscViewer viewer)
   PetscFunctionBegin;
   PetscCall(PetscObjectTypeCompare((PetscObject)viewer, PETSCVIEWERASCII, &ascii));
   if (!ascii) PetscFunctionReturn(PETSC_SUCCESS);
-  if (dd->gamma > 0.) PetscCall(PetscViewerASCIIPrintf(viewer, "  parallel Neumann scheme, gamma = %g, stop test %s\n", (double)dd->gamma, AbutStops[dd->stop]));
+  if (dd->gamma > 0.)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  parallel Neumann scheme, gamma = %g, stop test %s\n", (double)dd->gamma,
+                                     AbutStops[dd->stop]));
   else PetscCall(PetscViewerASCIIPrintf(viewer, "  parallel Neumann scheme, gamma = 2/(2+C/theta), stop test %s\n", AbutStops[dd->stop]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -152,15 +156,15 @@ PetscErrorCode SNESCreate_DDNeumann(SNES snes)
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&dd));
-  dd->eps                          = 0.0015;
-  snes->data                       = dd;
-  snes->ops->setup                 = SNESSetUp_DDNeumann;
-  snes->ops->setfromoptions        = SNESSetFromOptions_DDNeumann;
-  snes->ops->view                  = SNESView_DDNeumann;
-  snes->ops->solve                 = SNESSolve_DDNeumann;
-  snes->ops->destroy               = SNESDestroy_DDNeumann;
-  snes->usesksp                    = PETSC_FALSE;
-  snes->usesnpc                    = PETSC_FALSE;
+  dd->eps                           = 0.0015;
+  snes->data                        = dd;
+  snes->ops->setup                  = SNESSetUp_DDNeumann;
+  snes->ops->setfromoptions         = SNESSetFromOptions_DDNeumann;
+  snes->ops->view                   = SNESView_DDNeumann;
+  snes->ops->solve                  = SNESSolve_DDNeumann;
+  snes->ops->destroy                = SNESDestroy_DDNeumann;
+  snes->usesksp                     = PETSC_FALSE;
+  snes->usesnpc                     = PETSC_FALSE;
   snes->alwayscomputesfinalresidual = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

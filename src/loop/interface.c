@@ -25,13 +25,15 @@ PetscLogEvent ABUTINTERFACE_Sweep;
 
 .seealso: `AbutInterfaceSetUp()`, `AbutInterfaceSweep()`, `AbutInterfaceSetSNES()`, `AbutInterfaceDestroy()`
 @*/
-PetscErrorCode AbutInterfaceCreate(MPI_Comm comm, PetscInt nbodies, AbutBody bodies[], PetscInt npairs, AbutPair pairs[], AbutInterface *iface)
+PetscErrorCode AbutInterfaceCreate(MPI_Comm comm, PetscInt nbodies, AbutBody bodies[], PetscInt npairs, AbutPair pairs[],
+                                   AbutInterface *iface)
 {
   AbutInterface f;
 
   PetscFunctionBegin;
   PetscCall(AbutLoopRegisterAll());
-  PetscCall(PetscHeaderCreate(f, ABUTINTERFACE_CLASSID, "AbutInterface", "Map of the interface trace", "Interface", comm, AbutInterfaceDestroy, NULL));
+  PetscCall(PetscHeaderCreate(f, ABUTINTERFACE_CLASSID, "AbutInterface", "Map of the interface trace", "Interface", comm,
+                              AbutInterfaceDestroy, NULL));
   f->nbodies = nbodies;
   f->npairs  = npairs;
   PetscCall(PetscMalloc2(nbodies, &f->body, npairs, &f->pair));
@@ -52,7 +54,7 @@ PetscErrorCode AbutInterfaceCreate(MPI_Comm comm, PetscInt nbodies, AbutBody bod
 static PetscErrorCode AbutInterfaceLayout_Private(AbutInterface f)
 {
   MPI_Comm    comm = PetscObjectComm((PetscObject)f);
-  PetscInt    all  = f->offset[2 * f->npairs], n = 0;
+  PetscInt    all = f->offset[2 * f->npairs], n = 0;
   PetscMPIInt size, count, *counts, *displs;
 
   PetscFunctionBegin;
@@ -124,6 +126,8 @@ PetscErrorCode AbutInterfaceSetUp(AbutInterface iface)
   PetscCall(VecScatterCreateToAll(iface->G, &iface->toall, &iface->everywhere));
   iface->id           = 0;
   iface->residualbest = PETSC_MAX_REAL;
+  iface->linearfailed = PETSC_FALSE;
+  iface->failure      = NULL;
   iface->setupcalled  = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -295,7 +299,8 @@ PetscErrorCode AbutInterfaceSetGamma(AbutInterface iface, PetscReal gamma)
    Level: intermediate
 
    Note:
-   The eigenvalues of I - dG lie between 1 and 1 + C/theta; the automatic gamma balances their ends.
+   For two layers on supports the eigenvalues of I - dG lie between 1 and 1 + C/theta, and the automatic gamma balances their ends. A body that is held from
+   aside, or that is in several pairs, gives more than its layer: there the gamma may have to be smaller, and the verdict oscillation or nan says so.
 
 .seealso: `AbutInterfaceSetGamma()`, `AbutPairGetCompliance()`, `SNESDDNEUMANN`
 @*/
@@ -403,6 +408,7 @@ PetscErrorCode AbutInterfaceGetTrace(AbutInterface iface, PetscInt pair, PetscIn
 PetscErrorCode AbutInterfaceGetPairState(AbutInterface iface, PetscInt pair, AbutPairState *state)
 {
   PetscFunctionBegin;
-  PetscCall(AbutPairGetState(iface->pair[pair], iface->g + iface->offset[2 * pair], iface->g + iface->offset[2 * pair + 1], iface->p[pair], state));
+  PetscCall(AbutPairGetState(iface->pair[pair], iface->g + iface->offset[2 * pair], iface->g + iface->offset[2 * pair + 1], iface->p[pair],
+                             state));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

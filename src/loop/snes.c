@@ -33,19 +33,20 @@ static PetscErrorCode AbutInterfaceFunction_Private(SNES snes, Vec x, Vec F, voi
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-#define ABUT_WINDOW 50 /* iterations over which the residual must have fallen */
+#define ABUT_WINDOW 50 /* iterations over which the residual must have fallen; four times as many where the rate is not known */
 
 /* Beyond its limit the relaxation does not blow up, it wanders between open and overloaded contact: then the least residual of a window of iterations is not
    much below that of the window before. Half of what the slowest mode loses is asked for, or anything at all where that is not known. */
 static PetscBool AbutInterfaceStagnates_Private(AbutInterface f, PetscInt it)
 {
-  PetscBool stagnates = PETSC_FALSE;
+  const PetscInt window    = f->rate > 0. ? ABUT_WINDOW : 4 * ABUT_WINDOW;
+  PetscBool      stagnates = PETSC_FALSE;
 
   if (!it) f->best[0] = f->best[1] = PETSC_MAX_REAL;
-  else if (it % ABUT_WINDOW == 0) {
-    const PetscReal fall = 1. - PetscPowRealInt(1. - PetscMin(f->rate, 1.), ABUT_WINDOW);
+  else if (it % window == 0) {
+    const PetscReal fall = 1. - PetscPowRealInt(1. - PetscMin(f->rate, 1.), window);
 
-    stagnates  = (PetscBool)(it >= 3 * ABUT_WINDOW && f->best[0] >= (1. - 0.5 * fall) * f->best[1]);
+    stagnates  = (PetscBool)(it >= 3 * window && f->best[0] >= (1. - 0.5 * fall) * f->best[1]);
     f->best[1] = f->best[0];
     f->best[0] = f->residual;
   }
@@ -54,7 +55,8 @@ static PetscBool AbutInterfaceStagnates_Private(AbutInterface f, PetscInt it)
 }
 
 /* Never the change per sweep, which is gamma times smaller than the error: the fixed-point residual of the traces and of the pressures */
-static PetscErrorCode AbutInterfaceConverged_Private(SNES snes, PetscInt it, PETSC_UNUSED PetscReal xnorm, PETSC_UNUSED PetscReal ynorm, PetscReal fnorm, SNESConvergedReason *reason, void *ctx)
+static PetscErrorCode AbutInterfaceConverged_Private(SNES snes, PetscInt it, PETSC_UNUSED PetscReal xnorm, PETSC_UNUSED PetscReal ynorm,
+                                                     PetscReal fnorm, SNESConvergedReason *reason, void *ctx)
 {
   AbutInterface iface = (AbutInterface)ctx;
   PetscReal     rtol;
@@ -148,9 +150,17 @@ PetscErrorCode AbutInterfaceGetChange(AbutInterface iface, Vec step, Vec x, Pets
   }
   PetscCall(VecRestoreArrayRead(step, &s));
   PetscCall(VecRestoreArrayRead(x, &v));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, (PetscMPIInt)(2 * iface->nbodies), MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)iface)));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, (PetscMPIInt)(2 * iface->nbodies), MPIU_REAL, MPIU_SUM,
+                             PetscObjectComm((PetscObject)iface)));
   *change = 0.;
-  for (PetscInt b = 0; b < iface->nbodies; ++b) *change = PetscMax(*change, sum[2 * b + 1] > 0. ? PetscSqrtReal(sum[2 * b] / sum[2 * b + 1]) : PETSC_INFINITY);
+  for (PetscInt t = 0; t < 2 * iface->npairs; ++t) { /* a body that is in no pair has no trace to change */
+    PetscInt sides[2], b = 0;
+    AbutBody bodies[2];
+
+    PetscCall(AbutPairGetBodies(iface->pair[t / 2], bodies, sides));
+    while (iface->body[b] != bodies[t % 2]) ++b;
+    *change = PetscMax(*change, sum[2 * b + 1] > 0. ? PetscSqrtReal(sum[2 * b] / sum[2 * b + 1]) : PETSC_INFINITY);
+  }
   PetscCall(PetscFree(sum));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

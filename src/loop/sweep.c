@@ -114,7 +114,8 @@ PetscErrorCode AbutInterfaceSweep(AbutInterface iface, Vec x, Vec G)
       PetscCall(PetscLogEventBegin(ABUTINTERFACE_Sweep, iface, 0, 0, 0));
       PetscCall(AbutInterfaceReplicate_Private(iface, x, iface->x));
       for (PetscInt i = 0; i < iface->npairs; ++i)
-        PetscCall(AbutPairComputePressure(iface->pair[i], iface->x + iface->offset[2 * i], iface->x + iface->offset[2 * i + 1], iface->p[i]));
+        PetscCall(AbutPairComputePressure(iface->pair[i], iface->x + iface->offset[2 * i], iface->x + iface->offset[2 * i + 1],
+                                          iface->p[i]));
       PetscCall(AbutInterfaceSolveBodies_Private(iface));
       PetscCall(AbutInterfaceResiduals_Private(iface));
       PetscCall(AbutInterfaceLocalize_Private(iface, iface->g, iface->G));

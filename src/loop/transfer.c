@@ -80,7 +80,8 @@ PetscErrorCode AbutInterfaceTransferTrace(AbutInterface iface, Vec x)
 
     PetscCall(AbutPairGetBodies(iface->pair[t / 2], bodies, sides));
     PetscCall(AbutBodyGetSide(bodies[t % 2], sides[t % 2], &side));
-    for (PetscInt i = 0; i < side->n; ++i) iface->x[iface->offset[t] + i] = AbutOldTraceValue_Private(&iface->old[t], side->x + 2 * i, &element);
+    for (PetscInt i = 0; i < side->n; ++i)
+      iface->x[iface->offset[t] + i] = AbutOldTraceValue_Private(&iface->old[t], side->x + 2 * i, &element);
   }
   PetscCall(AbutInterfaceLocalize_Private(iface, iface->x, x));
   PetscFunctionReturn(PETSC_SUCCESS);

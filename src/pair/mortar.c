@@ -41,7 +41,7 @@ static void AbutPairChoosePressureSide_Private(AbutPair pair)
   for (PetscInt k = 0; k < 2; ++k) {
     const AbutSide *own = pair->nodes[k], *other = pair->nodes[!k];
     PetscReal       box[4] = {PETSC_MAX_REAL, PETSC_MAX_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL};
-    const PetscInt  d      = PetscAbsReal(own->normal[0]) > PetscAbsReal(own->normal[1]) ? 1 : 0; /* the coordinate that runs along the side */
+    const PetscInt  d = PetscAbsReal(own->normal[0]) > PetscAbsReal(own->normal[1]) ? 1 : 0; /* the coordinate that runs along the side */
 
     for (PetscInt i = 0; i < other->n; ++i) {
       box[d]     = PetscMin(box[d], other->x[2 * i + d]);
@@ -88,9 +88,14 @@ static PetscErrorCode AbutPairSegment_Private(AbutPair pair, PetscReal *const s[
   g->element[0] = e;
   g->element[1] = k;
   for (PetscInt q = 0; q < 4; ++q) {
-    const PetscReal at = 0.5 * (from + to) + 0.5 * z[q] * (to - from), dw = 0.5 * w[q] * (to - from), x[2] = {m->x[0] + at * tangent[0], m->x[1] + at * tangent[1]};
-    const PetscReal own = (at - s[0][e]) / (s[0][e + 1] - s[0][e]), other = (at - s[1][k]) / (s[1][k + 1] - s[1][k]), phi[2][2] = {{1. - own, own}, {1. - other, other}};
-    PetscReal       f;
+    const PetscReal at = 0.5 * (from + to) + 0.5 * z[q] * (to - from), dw = 0.5 * w[q] * (to - from),
+                    x[2] = {m->x[0] + at * tangent[0], m->x[1] + at * tangent[1]};
+    const PetscReal own = (at - s[0][e]) / (s[0][e + 1] - s[0][e]), other = (at - s[1][k]) / (s[1][k + 1] - s[1][k]),
+                    phi[2][2] = {
+                      {1. - own,   own  },
+                      {1. - other, other}
+    };
+    PetscReal f;
 
     PetscCall(AbutPairGetGap(pair, x, &f));
     for (PetscInt i = 0; i < 2; ++i) {
@@ -119,12 +124,17 @@ PetscErrorCode AbutPairMortar_Private(AbutPair pair)
   PetscCall(AbutPairProject_Private(pair, s, tangent));
   PetscCall(PetscMalloc1(m->n + o->n, &pair->segment));
   PetscCall(PetscCalloc3(m->n, &pair->D, m->n, &pair->F, m->n, &pair->work));
-  low  = s[1][o->n - 1];
-  high = s[1][0];
-  k    = o->n - 2;
+  low              = s[1][o->n - 1];
+  high             = s[1][0];
+  k                = o->n - 2;
+  pair->overlap[0] = PetscMax(low, 0.);
+  pair->overlap[1] = PetscMin(high, s[0][m->n - 1]);
   for (PetscInt e = 0; e + 1 < m->n; ++e) {
     const PetscReal h = s[0][e + 1] - s[0][e], from = PetscMax(s[0][e], low), to = PetscMin(s[0][e + 1], high);
-    const PetscReal hats[2][2] = {{(s[0][e + 1] - from) / h, (s[0][e + 1] - to) / h}, {(from - s[0][e]) / h, (to - s[0][e]) / h}};
+    const PetscReal hats[2][2] = {
+      {(s[0][e + 1] - from) / h, (s[0][e + 1] - to) / h},
+      {(from - s[0][e]) / h,     (to - s[0][e]) / h    }
+    };
     const PetscBool carries[2] = {(PetscBool)!m->fixed[e], (PetscBool)!m->fixed[e + 1]};
     PetscReal       A[2][2];
 

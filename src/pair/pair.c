@@ -55,8 +55,9 @@ static PetscErrorCode AbutPairSplit_Private(AbutPair pair, const char key[], con
   const char *comma = strchr(text, ',');
 
   PetscFunctionBegin;
-  AbutCheckInput(comma && !strchr(comma + 1, ',') && comma != text && comma[1], PetscObjectComm((PetscObject)pair), "%s_pair_%s: \"%s\" is not two names; give them with a comma between, for example %s",
-                 ((PetscObject)pair)->name, key, text, key[0] == 'b' ? "upper,lower" : "bottom,top");
+  AbutCheckInput(comma && !strchr(comma + 1, ',') && comma != text && comma[1], PetscObjectComm((PetscObject)pair),
+                 "%s_pair_%s: \"%s\" is not two names; give them with a comma between, for example %s", ((PetscObject)pair)->name, key,
+                 text, key[0] == 'b' ? "upper,lower" : "bottom,top");
   PetscCall(PetscStrncpy(first, text, PetscMin(len, (size_t)(comma - text) + 1)));
   while (*++comma == ' ') { }
   PetscCall(PetscStrncpy(second, comma, len));
@@ -80,9 +81,11 @@ static PetscErrorCode AbutPairFindBodies_Private(AbutPair pair, const char text[
       PetscCall(PetscStrcasecmp(names[s], ((PetscObject)bodies[i])->name, &match));
       if (match) pair->body[s] = bodies[i];
     }
-    AbutCheckInput(pair->body[s], PetscObjectComm((PetscObject)pair), "%s_pair_bodies: the scene has no body \"%s\"; give two of: %s", ((PetscObject)pair)->name, names[s], all);
+    AbutCheckInput(pair->body[s], PetscObjectComm((PetscObject)pair), "%s_pair_bodies: the scene has no body \"%s\"; give two of: %s",
+                   ((PetscObject)pair)->name, names[s], all);
   }
-  AbutCheckInput(pair->body[0] != pair->body[1], PetscObjectComm((PetscObject)pair), "%s_pair_bodies: both are \"%s\"; give two different bodies of: %s", ((PetscObject)pair)->name, names[0], all);
+  AbutCheckInput(pair->body[0] != pair->body[1], PetscObjectComm((PetscObject)pair),
+                 "%s_pair_bodies: both are \"%s\"; give two different bodies of: %s", ((PetscObject)pair)->name, names[0], all);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -104,16 +107,23 @@ static PetscErrorCode AbutPairCheckFacing_Private(AbutPair pair)
   for (PetscInt d = 0; d < 2; ++d) tangent[d] = ends[0][2 + d] - ends[0][d];
   length = PetscSqrtReal(tangent[0] * tangent[0] + tangent[1] * tangent[1]);
   for (PetscInt s = 0; s < 2; ++s) {
-    const PetscReal a = (ends[s][0] * tangent[0] + ends[s][1] * tangent[1]) / length, b = (ends[s][2] * tangent[0] + ends[s][3] * tangent[1]) / length;
+    const PetscReal a = (ends[s][0] * tangent[0] + ends[s][1] * tangent[1]) / length,
+                    b = (ends[s][2] * tangent[0] + ends[s][3] * tangent[1]) / length;
 
     from[s] = PetscMin(a, b);
     to[s]   = PetscMax(a, b);
   }
   common   = PetscMin(to[0], to[1]) - PetscMax(from[0], from[1]);
   distance = (ends[1][0] - ends[0][0]) * normal[0][0] + (ends[1][1] - ends[0][1]) * normal[0][1];
-  AbutCheckInput(normal[0][0] * normal[1][0] + normal[0][1] * normal[1][1] < -0.999 && common > 1e-9 * length && PetscAbsReal(distance) < 0.1 * length, comm,
-                 "%s_pair_sides: bodies \"%s\" and \"%s\" share no part of these sides (distance %g); give sides that lie against each other, for example bottom,top", name, body[0], body[1], (double)distance);
-  AbutCheckInput(!pair->gap || PetscAbsReal(distance) < 1e-6 * length, comm, "%s_pair_gap: given, but the sides of \"%s\" and \"%s\" are %g apart; bring the boxes together, or leave the gap out to use this distance",
+  AbutCheckInput(normal[0][0] * normal[1][0] + normal[0][1] * normal[1][1] < -0.999 && common > 1e-9 * length &&
+                   PetscAbsReal(distance) < 0.1 * length,
+                 comm,
+                 "%s_pair_sides: bodies \"%s\" and \"%s\" share no part of these sides (distance %g); give sides that lie against each "
+                 "other, for example bottom,top",
+                 name, body[0], body[1], (double)distance);
+  AbutCheckInput(!pair->gap || PetscAbsReal(distance) < 1e-6 * length, comm,
+                 "%s_pair_gap: given, but the sides of \"%s\" and \"%s\" are %g apart; bring the boxes together, or leave the gap out to "
+                 "use this distance",
                  name, body[0], body[1], (double)distance);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -131,8 +141,9 @@ static PetscErrorCode AbutPairSetTheta_Private(AbutPair pair)
   if (pair->height <= 0.) PetscCall(AbutBodyGetHeight(pair->body[0], normal, &pair->height));
   PetscCall(AbutBodyGetMaterial(pair->body[0], &young, &poisson));
   if (!pair->thetaset) pair->theta = pair->penalty * pair->height / young;
-  AbutCheckInput(pair->theta > 0., comm, "%s_pair_%s: %g; the penalty form needs a positive one, for example %s", name, pair->thetaset ? "theta" : "penalty",
-                 (double)(pair->thetaset ? pair->theta : pair->penalty), pair->thetaset ? "2.4e-7" : "0.05");
+  AbutCheckInput(pair->theta > 0., comm, "%s_pair_%s: %g; the penalty form needs a positive one, for example %s", name,
+                 pair->thetaset ? "theta" : "penalty", (double)(pair->thetaset ? pair->theta : pair->penalty),
+                 pair->thetaset ? "2.4e-7" : "0.05");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -152,8 +163,8 @@ static PetscErrorCode AbutPairSetTheta_Private(AbutPair pair)
 @*/
 PetscErrorCode AbutPairSetFromOptions(AbutPair pair, PetscInt nbodies, AbutBody bodies[])
 {
-  MPI_Comm    comm = PetscObjectComm((PetscObject)pair);
-  const char *name = ((PetscObject)pair)->name;
+  MPI_Comm    comm                        = PetscObjectComm((PetscObject)pair);
+  const char *name                        = ((PetscObject)pair)->name;
   char        text[3][PETSC_MAX_PATH_LEN] = {"", "", ""}, names[2][128], key[256];
   PetscBool   set[3], heightset;
   PetscInt    pressureside = pair->pressureside;
@@ -166,12 +177,14 @@ PetscErrorCode AbutPairSetFromOptions(AbutPair pair, PetscInt nbodies, AbutBody 
   PetscCall(AbutOptionsReal(PetscOptionsObject, "-pair_penalty", "c of theta = c H/E", &pair->penalty, NULL));
   PetscCall(AbutOptionsReal(PetscOptionsObject, "-pair_theta", "theta", &pair->theta, &pair->thetaset));
   PetscCall(AbutOptionsReal(PetscOptionsObject, "-pair_height", "H of theta = c H/E", &pair->height, &heightset));
-  PetscCall(AbutOptionsEnum(PetscOptionsObject, "-pair_pressure_side", "Which side carries the pressures", AbutPressureSideNames, &pressureside, NULL));
+  PetscCall(AbutOptionsEnum(PetscOptionsObject, "-pair_pressure_side", "Which side carries the pressures", AbutPressureSideNames,
+                            &pressureside, NULL));
   PetscOptionsEnd();
   pair->pressureside = (AbutPressureSide)pressureside;
   AbutCheckInput(set[0], comm, "%s_pair_bodies: missing; give the names of two bodies, for example upper,lower", name);
   AbutCheckInput(set[1], comm, "%s_pair_sides: missing; give a side of each body, for example bottom,top", name);
-  AbutCheckInput(!heightset || pair->height > 0., comm, "%s_pair_height: %g is not a length; give a positive number", name, (double)pair->height);
+  AbutCheckInput(!heightset || pair->height > 0., comm, "%s_pair_height: %g is not a length; give a positive number", name,
+                 (double)pair->height);
   PetscCall(AbutPairFindBodies_Private(pair, text[0], nbodies, bodies));
   PetscCall(AbutPairSplit_Private(pair, "sides", text[1], names[0], names[1], sizeof(names[0])));
   PetscCall(PetscSNPrintf(key, sizeof(key), "%s_pair_sides", name));
@@ -253,10 +266,14 @@ PetscErrorCode AbutPairView(AbutPair pair, PetscViewer viewer)
     PetscCall(AbutBodyGetMesh(pair->body[s], &mesh));
     PetscCall(AbutMeshGetSideName(mesh, pair->side[s], &side[s]));
   }
-  PetscCall(PetscViewerASCIIPrintf(viewer, "pair %s: %s of %s on %s of %s, gap %s, theta %g\n", ((PetscObject)pair)->name, side[0], body[0], side[1], body[1], gap, (double)pair->theta));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "pair %s: %s of %s on %s of %s, gap %s, theta %g\n", ((PetscObject)pair)->name, side[0], body[0],
+                                   side[1], body[1], gap, (double)pair->theta));
   if (pair->segment) {
     PetscCall(PetscViewerASCIIPushTab(viewer));
-    PetscCall(PetscViewerASCIIPrintf(viewer, "%" PetscInt_FMT " and %" PetscInt_FMT " nodes, %" PetscInt_FMT " pieces in the common refinement, pressures on %s\n", pair->n[0], pair->n[1], pair->nsegments, body[pair->which]));
+    PetscCall(PetscViewerASCIIPrintf(viewer,
+                                     "%" PetscInt_FMT " and %" PetscInt_FMT " nodes, %" PetscInt_FMT
+                                     " pieces in the common refinement, pressures on %s\n",
+                                     pair->n[0], pair->n[1], pair->nsegments, body[pair->which]));
     PetscCall(PetscViewerASCIIPopTab(viewer));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -396,7 +413,7 @@ PetscErrorCode AbutPairGetTheta(AbutPair pair, PetscReal *theta)
    Level: intermediate
 
    Note:
-   Their sum C bounds the spectrum of a sweep: relaxation converges for gamma < 2/(1+C/theta).
+   For two layers on supports their sum C bounds the spectrum of a sweep: relaxation converges for gamma < 2/(1+C/theta).
 
 .seealso: `AbutPairGetTheta()`, `AbutInterfaceGetGamma()`
 @*/

@@ -1,37 +1,34 @@
 #include <abut/private/pairimpl.h> /*I "abutpair.h" I*/
 
-/* Where the penetration changes sign. In contact at an end of the side (a symmetric half model): distance from that end; else half the distance of the two edges. */
+/* Distance of a node from the first one along the (straight) side */
+static PetscReal AbutPairPlace_Private(const AbutSide *m, PetscInt i)
+{
+  return PetscSqrtReal(PetscSqr(m->x[2 * i] - m->x[0]) + PetscSqr(m->x[2 * i + 1] - m->x[1]));
+}
+
+/* Where the penetration changes sign. In contact at an end of the part that both sides share (a symmetric half model): distance from that end; else half the
+   distance of the two edges. Beyond the last node that may carry a pressure the contact reaches the end of the shared part. */
 static PetscReal AbutPairEdge_Private(AbutPair pair, const PetscReal g[], const PetscReal p[])
 {
   const AbutSide *m     = pair->nodes[pair->which];
   PetscInt        first = -1, last = -1;
-  PetscReal       edge[2], length = 0.;
+  PetscReal       edge[2];
 
   for (PetscInt i = 0; i < m->n; ++i) {
-    if (i) length += PetscSqrtReal(PetscSqr(m->x[2 * i] - m->x[2 * i - 2]) + PetscSqr(m->x[2 * i + 1] - m->x[2 * i - 1]));
     if (p[i] <= 0.) continue;
     if (first < 0) first = i;
     last = i;
   }
   if (first < 0) return 0.;
   for (PetscInt k = 0; k < 2; ++k) {
-    const PetscInt  in = k ? last : first, out = k ? last + 1 : first - 1;
-    const PetscReal ds[2] = {m->x[2 * in] - m->x[0], m->x[2 * in + 1] - m->x[1]};
+    const PetscInt in = k ? last : first, out = k ? last + 1 : first - 1;
 
-    edge[k] = PetscSqrtReal(ds[0] * ds[0] + ds[1] * ds[1]);
-    if (out < 0 || out >= m->n || pair->D[out] <= 0.) {
-      if (out < 0 || (k == 0 && out == 0)) edge[k] = 0.; /* closed up to the end, or up to an end node that carries no pressure */
-      else edge[k] = length;
-      continue;
-    }
-    {
-      const PetscReal h = PetscSqrtReal(PetscSqr(m->x[2 * out] - m->x[2 * in]) + PetscSqr(m->x[2 * out + 1] - m->x[2 * in + 1]));
-
-      if (g[in] > 0. && g[out] < 0.) edge[k] += (k ? 1. : -1.) * h * g[in] / (g[in] - g[out]);
-    }
+    edge[k] = pair->overlap[k];
+    if (out < 0 || out >= m->n || pair->D[out] <= 0.) continue;
+    edge[k] = AbutPairPlace_Private(m, in);
+    if (g[in] > 0. && g[out] < 0.) edge[k] += (AbutPairPlace_Private(m, out) - edge[k]) * g[in] / (g[in] - g[out]);
   }
-  if (edge[0] <= 0. || edge[1] >= length) return edge[1] - edge[0];
-  return 0.5 * (edge[1] - edge[0]);
+  return (edge[0] <= pair->overlap[0] || edge[1] >= pair->overlap[1] ? 1. : 0.5) * (edge[1] - edge[0]);
 }
 
 /*@C
@@ -55,8 +52,8 @@ static PetscReal AbutPairEdge_Private(AbutPair pair, const PetscReal g[], const 
 PetscErrorCode AbutPairGetState(AbutPair pair, const PetscReal u1[], const PetscReal u2[], const PetscReal p[], AbutPairState *state)
 {
   const PetscReal *const u[2] = {u1, u2};
-  PetscReal             *g    = pair->work, *f[2], sum[2] = {0., 0.}, product = 0.;
-  const PetscInt         n    = pair->n[pair->which];
+  PetscReal             *g = pair->work, *f[2], sum[2] = {0., 0.}, product = 0.;
+  const PetscInt         n = pair->n[pair->which];
 
   PetscFunctionBegin;
   PetscCall(PetscMemzero(state, sizeof(*state)));

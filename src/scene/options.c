@@ -2,10 +2,12 @@
 
 /* What a scene names is made, and only that */
 
-static const char *const AbutReservedNames[] = {"scene", "snes", "npc", "ksp", "pc", "mat", "vec", "dm", "adaptor", "estimator", "record", "output", "plugin", "log", "options", "malloc", "help", NULL};
+static const char *const AbutReservedNames[] = {"scene",     "snes",   "npc",    "ksp",    "pc",  "mat",     "vec",    "dm",   "adaptor",
+                                                "estimator", "record", "output", "plugin", "log", "options", "malloc", "help", NULL};
 
 /* A comma-separated list of names; names are prefixes of keys, so no two may be equal, nor equal to the prefix of a class */
-PetscErrorCode AbutSceneReadNames_Private(AbutScene scene, AbutOptionItems PetscOptionsObject, const char opt[], const char text[], PetscInt *n, char *names[])
+PetscErrorCode AbutSceneReadNames_Private(AbutScene scene, AbutOptionItems PetscOptionsObject, const char opt[], const char text[],
+                                          PetscInt *n, char *names[])
 {
   MPI_Comm  comm = PetscObjectComm((PetscObject)scene);
   PetscBool given, match;
@@ -17,9 +19,11 @@ PetscErrorCode AbutSceneReadNames_Private(AbutScene scene, AbutOptionItems Petsc
   for (PetscInt i = 0; i < *n; ++i) {
     const char *at = names[i];
 
-    AbutCheckInput((*at >= 'a' && *at <= 'z') || (*at >= 'A' && *at <= 'Z'), comm, "%s: \"%s\" is not a name; begin with a letter", opt + 1, at);
+    AbutCheckInput((*at >= 'a' && *at <= 'z') || (*at >= 'A' && *at <= 'Z'), comm, "%s: \"%s\" is not a name; begin with a letter", opt + 1,
+                   at);
     for (; *at; ++at)
-      AbutCheckInput((*at >= 'a' && *at <= 'z') || (*at >= 'A' && *at <= 'Z') || (*at >= '0' && *at <= '9'), comm, "%s: \"%s\" is not a name; use letters and digits", opt + 1, names[i]);
+      AbutCheckInput((*at >= 'a' && *at <= 'z') || (*at >= 'A' && *at <= 'Z') || (*at >= '0' && *at <= '9'), comm,
+                     "%s: \"%s\" is not a name; use letters and digits", opt + 1, names[i]);
     for (PetscInt r = 0; AbutReservedNames[r]; ++r) {
       PetscCall(PetscStrcasecmp(names[i], AbutReservedNames[r], &match));
       AbutCheckInput(!match, comm, "%s: \"%s\" begins keys of its own; take another name", opt + 1, names[i]);
@@ -40,7 +44,8 @@ static PetscErrorCode AbutSceneCheckDistinct_Private(AbutScene scene, PetscInt n
   for (PetscInt i = 0; i < n; ++i)
     for (PetscInt j = 0; j < m; ++j) {
       PetscCall(PetscStrcasecmp(names[i], others[j], &match));
-      AbutCheckInput(!match, PetscObjectComm((PetscObject)scene), "scene: the name \"%s\" is given to two things; bodies, pairs and probes need different names", names[i]);
+      AbutCheckInput(!match, PetscObjectComm((PetscObject)scene),
+                     "scene: the name \"%s\" is given to two things; bodies, pairs and probes need different names", names[i]);
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -48,7 +53,7 @@ static PetscErrorCode AbutSceneCheckDistinct_Private(AbutScene scene, PetscInt n
 /* The estimator runs on the bodies of the adaptor, or on all; an adaptor without an estimator gets the default one */
 static PetscErrorCode AbutSceneErrorFromOptions_Private(AbutScene scene, PetscBool adapts, PetscBool estimates)
 {
-  MPI_Comm           comm = PetscObjectComm((PetscObject)scene);
+  MPI_Comm           comm  = PetscObjectComm((PetscObject)scene);
   const char *const *names = NULL;
   PetscInt           n     = 0;
 
@@ -122,7 +127,7 @@ PetscErrorCode AbutSceneSetFromOptions(AbutScene scene)
   MPI_Comm  comm = PetscObjectComm((PetscObject)scene);
   char     *bodies[ABUT_MAX_NAMES], *pairs[ABUT_MAX_NAMES], *probes[ABUT_MAX_NAMES], type[64] = "";
   PetscInt  nbodies, npairs, nprobes;
-  PetscBool adapts, estimates;
+  PetscBool adapts, estimates, profile;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(scene, ABUTSCENE_CLASSID, 1);
@@ -131,13 +136,15 @@ PetscErrorCode AbutSceneSetFromOptions(AbutScene scene)
   PetscCall(AbutSceneReadNames_Private(scene, PetscOptionsObject, "-scene_pairs", "Names of the possible contacts", &npairs, pairs));
   PetscCall(AbutSceneReadNames_Private(scene, PetscOptionsObject, "-scene_probes", "Names of the points of the record", &nprobes, probes));
   PetscCall(AbutOptionsBool(PetscOptionsObject, "-scene_interleave", "One sweep and one adaptation a cycle", &scene->interleave, NULL));
-  if (scene->interleave) PetscCall(AbutOptionsReal(PetscOptionsObject, "-scene_eps_u", "Relative change of the traces at the end", &scene->eps_u, NULL));
+  if (scene->interleave)
+    PetscCall(AbutOptionsReal(PetscOptionsObject, "-scene_eps_u", "Relative change of the traces at the end", &scene->eps_u, NULL));
   PetscCall(PetscOptionsString("-adaptor_type", "Type of the adaptor", NULL, type, type, sizeof(type), &adapts));
   PetscCall(PetscOptionsString("-estimator_type", "Type of the estimator", NULL, type, type, sizeof(type), &estimates));
   PetscCall(AbutScenePlugins_Private(scene, PetscOptionsObject));
   PetscOptionsEnd();
   AbutCheckInput(scene->eps_u > 0., comm, "scene_eps_u: %g; give a positive number, for example 0.0015", (double)scene->eps_u);
-  AbutCheckInput(nbodies > 0, comm, "scene_bodies: missing; give the names of the bodies, or a scene file, for example examples/layers/layers.yml");
+  AbutCheckInput(nbodies > 0, comm,
+                 "scene_bodies: missing; give the names of the bodies, or a scene file, for example examples/layers/layers.yml");
   PetscCall(AbutSceneCheckDistinct_Private(scene, nbodies, bodies, npairs, pairs));
   PetscCall(AbutSceneCheckDistinct_Private(scene, nbodies, bodies, nprobes, probes));
   PetscCall(AbutSceneCheckDistinct_Private(scene, npairs, pairs, nprobes, probes));
@@ -156,7 +163,11 @@ PetscErrorCode AbutSceneSetFromOptions(AbutScene scene)
   PetscCall(AbutInterfaceCreate(comm, scene->nbodies, scene->body, scene->npairs, scene->pair, &scene->iface));
   if (scene->npairs) PetscCall(AbutSceneSolverFromOptions_Private(scene));
   PetscCall(AbutSceneErrorFromOptions_Private(scene, adapts, estimates));
-  AbutCheckInput(!scene->interleave || scene->adaptor, comm, "scene_interleave: the scene has no adaptor; give adaptor_type, or leave scene_interleave out");
+  AbutCheckInput(!scene->interleave || scene->adaptor, comm,
+                 "scene_interleave: the scene has no adaptor; give adaptor_type, or leave scene_interleave out");
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-output_profile", &profile));
+  AbutCheckInput(!profile || scene->npairs, comm,
+                 "output_profile: the scene has no pair to make a profile of; give scene_pairs, or leave it out");
   PetscCall(AbutRecorderCreate(comm, &scene->recorder));
   PetscCall(AbutRecorderSetFromOptions(scene->recorder));
   PetscFunctionReturn(PETSC_SUCCESS);

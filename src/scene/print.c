@@ -5,14 +5,15 @@
 PetscErrorCode AbutScenePrintHeader_Private(AbutScene scene)
 {
   PetscFunctionBegin;
-  PetscCall(PetscPrintf(PetscObjectComm((PetscObject)scene), "%5s %10s %8s %7s %10s %10s %12s %9s\n", "cycle", "unknowns", "cells", "marked", "estimate", "eta_max", "sweeps", "seconds"));
+  PetscCall(PetscPrintf(PetscObjectComm((PetscObject)scene), "%5s %10s %8s %7s %10s %10s %12s %9s\n", "cycle", "unknowns", "cells",
+                        "marked", "estimate", "eta_max", "sweeps", "seconds"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode AbutScenePrintCycle_Private(AbutScene scene, PetscInt nmarked)
 {
   PetscInt  unknowns = 0, cells = 0, sweeps = scene->cycle + 1;
-  PetscReal worst[2] = {0., 0.};
+  PetscReal worst[2]        = {0., 0.};
   char      estimate[2][32] = {"-", "-"};
 
   PetscFunctionBegin;
@@ -33,8 +34,11 @@ PetscErrorCode AbutScenePrintCycle_Private(AbutScene scene, PetscInt nmarked)
     for (PetscInt k = 0; k < 2; ++k) PetscCall(PetscSNPrintf(estimate[k], sizeof(estimate[k]), "%.4f", (double)worst[k]));
   }
   if (scene->snes) PetscCall(AbutInterfaceGetSweeps(scene->iface, &sweeps, NULL));
-  PetscCall(PetscPrintf(PetscObjectComm((PetscObject)scene), "%5" PetscInt_FMT " %10" PetscInt_FMT " %8" PetscInt_FMT " %7" PetscInt_FMT " %10s %10s %12" PetscInt_FMT " %9.2f\n", scene->cycle + 1, unknowns, cells,
-                        nmarked, estimate[0], estimate[1], sweeps, (double)(scene->mark - scene->begun)));
+  PetscCall(PetscPrintf(PetscObjectComm((PetscObject)scene),
+                        "%5" PetscInt_FMT " %10" PetscInt_FMT " %8" PetscInt_FMT " %7" PetscInt_FMT " %10s %10s %12" PetscInt_FMT
+                        " %9.2f\n",
+                        scene->cycle + 1, unknowns, cells, nmarked, estimate[0], estimate[1], sweeps,
+                        (double)(scene->mark - scene->begun)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -53,9 +57,12 @@ static PetscErrorCode AbutScenePrintPairs_Private(AbutScene scene)
       PetscCall(PetscPrintf(comm, "pair %s: no contact\n", name));
       continue;
     }
-    PetscCall(PetscPrintf(comm, "pair %s: force %.8g, largest pressure %.8g, contact edge at %.6g, %" PetscInt_FMT " of %" PetscInt_FMT " nodes in contact\n", name, (double)s.force, (double)s.pressure_max,
-                          (double)s.contact_edge, s.active, s.nodes));
-    PetscCall(PetscPrintf(comm, "  penetration %.3g, complementarity %.1e, balance of forces %.1e\n", (double)s.penetration_max, (double)s.complementarity, (double)s.balance));
+    PetscCall(PetscPrintf(comm,
+                          "pair %s: force %.8g, largest pressure %.8g, contact edge at %.6g, %" PetscInt_FMT " of %" PetscInt_FMT
+                          " nodes in contact\n",
+                          name, (double)s.force, (double)s.pressure_max, (double)s.contact_edge, s.active, s.nodes));
+    PetscCall(PetscPrintf(comm, "  penetration %.3g, complementarity %.1e, balance of forces %.1e\n", (double)s.penetration_max,
+                          (double)s.complementarity, (double)s.balance));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -63,14 +70,16 @@ static PetscErrorCode AbutScenePrintPairs_Private(AbutScene scene)
 /* What the run cost, per unit */
 static PetscErrorCode AbutScenePrintCost_Private(AbutScene scene)
 {
-  MPI_Comm        comm  = PetscObjectComm((PetscObject)scene);
-  const PetscReal total = scene->mark - scene->begun;
+  MPI_Comm        comm      = PetscObjectComm((PetscObject)scene);
+  const PetscReal total     = scene->mark - scene->begun;
   PetscReal       assembly  = 0.;
   PetscInt        assembled = 0;
 
   PetscFunctionBegin;
-  PetscCall(PetscPrintf(comm, "seconds: %.2f = set-up %.2f + sweeps %.2f + estimate %.2f (%.0f %%) + adapt %.2f + output %.2f\n", (double)total, scene->seconds[ABUT_TIME_SETUP], scene->seconds[ABUT_TIME_SOLVE],
-                        scene->seconds[ABUT_TIME_ESTIMATE], total > 0. ? 100. * scene->seconds[ABUT_TIME_ESTIMATE] / total : 0., scene->seconds[ABUT_TIME_ADAPT], scene->seconds[ABUT_TIME_OUTPUT]));
+  PetscCall(PetscPrintf(comm, "seconds: %.2f = set-up %.2f + sweeps %.2f + estimate %.2f (%.0f %%) + adapt %.2f + output %.2f\n",
+                        (double)total, scene->seconds[ABUT_TIME_SETUP], scene->seconds[ABUT_TIME_SOLVE], scene->seconds[ABUT_TIME_ESTIMATE],
+                        total > 0. ? 100. * scene->seconds[ABUT_TIME_ESTIMATE] / total : 0., scene->seconds[ABUT_TIME_ADAPT],
+                        scene->seconds[ABUT_TIME_OUTPUT]));
   for (PetscInt b = 0; b < scene->nbodies; ++b) {
     PetscReal seconds;
     PetscInt  cells;
@@ -79,7 +88,8 @@ static PetscErrorCode AbutScenePrintCost_Private(AbutScene scene)
     assembly += seconds;
     assembled += cells;
   }
-  PetscCall(PetscPrintf(comm, "element matrices and their insertion: %.2f microseconds a cell (%" PetscInt_FMT " cells)\n", assembled ? (double)(1e6 * assembly / assembled) : 0., assembled));
+  PetscCall(PetscPrintf(comm, "element matrices and their insertion: %.2f microseconds a cell (%" PetscInt_FMT " cells)\n",
+                        assembled ? (double)(1e6 * assembly / assembled) : 0., assembled));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -91,6 +101,8 @@ PetscErrorCode AbutScenePrintEnd_Private(AbutScene scene)
   PetscCall(AbutScenePrintPairs_Private(scene));
   PetscCall(AbutScenePrintCost_Private(scene));
   PetscCall(PetscPrintf(comm, "verdict: %s%s\n", scene->verdict,
-                        scene->status == 3 ? " (cells are still above the threshold: raise -adaptor_max_level or -adaptor_max_unknowns, or the threshold)" : ""));
+                        scene->status == 3
+                          ? " (cells are still above the threshold: raise -adaptor_max_level or -adaptor_max_unknowns, or the threshold)"
+                          : ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

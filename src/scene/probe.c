@@ -25,8 +25,9 @@ PetscErrorCode AbutSceneProbesFromOptions_Private(AbutScene scene, PetscInt n, c
     AbutCheckInput(probe->body, comm, "%s_probe_body: the scene has no body \"%s\"; give a name from scene_bodies", names[i], body);
     PetscCall(AbutBodyGetMesh(probe->body, &mesh));
     PetscCall(AbutMeshGetBox(mesh, lower, upper));
-    AbutCheckInput(probe->x[0] >= lower[0] && probe->x[0] <= upper[0] && probe->x[1] >= lower[1] && probe->x[1] <= upper[1], comm, "%s_probe_point: (%g, %g) lies outside \"%s\"; give a point of its box [%g,%g]x[%g,%g]",
-                   names[i], (double)probe->x[0], (double)probe->x[1], body, (double)lower[0], (double)upper[0], (double)lower[1], (double)upper[1]);
+    AbutCheckInput(probe->x[0] >= lower[0] && probe->x[0] <= upper[0] && probe->x[1] >= lower[1] && probe->x[1] <= upper[1], comm,
+                   "%s_probe_point: (%g, %g) lies outside \"%s\"; give a point of its box [%g,%g]x[%g,%g]", names[i], (double)probe->x[0],
+                   (double)probe->x[1], body, (double)lower[0], (double)upper[0], (double)lower[1], (double)upper[1]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

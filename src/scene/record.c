@@ -135,7 +135,6 @@ static PetscErrorCode AbutSceneRecordPairs_Private(AbutScene scene, PetscReal st
 static PetscErrorCode AbutSceneRecordEstimates_Private(AbutScene scene)
 {
   PetscReal worst = 0.;
-  PetscInt  n;
 
   PetscFunctionBegin;
   if (!scene->estimator) PetscFunctionReturn(PETSC_SUCCESS);
@@ -150,8 +149,7 @@ static PetscErrorCode AbutSceneRecordEstimates_Private(AbutScene scene)
     PetscCall(AbutSceneSetReal_Private(scene, "eta_max", name, "", eta_max));
     worst = PetscMax(worst, eta);
   }
-  PetscCall(AbutEstimatorGetUnknowns(scene->estimator, &n));
-  PetscCall(AbutRecorderSetInt(scene->recorder, "unknowns_estimator", n));
+  PetscCall(AbutRecorderSetInt(scene->recorder, "unknowns_estimator", scene->unknowns_estimator));
   PetscCall(AbutRecorderSetReal(scene->recorder, "error.discretisation", worst));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -195,7 +193,7 @@ PetscErrorCode AbutSceneRecord_Private(AbutScene scene, PetscBool *consistent)
 PetscErrorCode AbutSceneRecordTimes_Private(AbutScene scene)
 {
   static const char *const key[ABUT_TIMES] = {"time.setup", "time.solve", "time.estimate", "time.adapt", "time.output"};
-  MPI_Comm                 comm = PetscObjectComm((PetscObject)scene);
+  MPI_Comm                 comm            = PetscObjectComm((PetscObject)scene);
   PetscReal                seconds[ABUT_TIMES + 1], memory;
   struct rusage            usage;
 

@@ -188,12 +188,16 @@ PetscErrorCode AbutSceneGetInterface(AbutScene scene, AbutInterface *iface)
 PetscErrorCode AbutSceneView(AbutScene scene, PetscViewer viewer)
 {
   PetscFunctionBegin;
-  PetscCall(PetscViewerASCIIPrintf(viewer, "scene of %" PetscInt_FMT " bodies and %" PetscInt_FMT " pairs\n", scene->nbodies, scene->npairs));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "scene of %" PetscInt_FMT " bodies and %" PetscInt_FMT " pairs\n", scene->nbodies,
+                                   scene->npairs));
   PetscCall(PetscViewerASCIIPushTab(viewer));
   for (PetscInt i = 0; i < scene->nbodies; ++i) PetscCall(AbutBodyView(scene->body[i], viewer));
   for (PetscInt i = 0; i < scene->npairs; ++i) PetscCall(AbutPairView(scene->pair[i], viewer));
   if (scene->snes) PetscCall(SNESView(scene->snes, viewer));
-  if (scene->interleave) PetscCall(PetscViewerASCIIPrintf(viewer, "one sweep and one adaptation a cycle, until the relative change of the traces is at most %g\n", (double)scene->eps_u));
+  if (scene->interleave)
+    PetscCall(PetscViewerASCIIPrintf(viewer,
+                                     "one sweep and one adaptation a cycle, until the relative change of the traces is at most %g\n",
+                                     (double)scene->eps_u));
   if (scene->estimator) PetscCall(AbutEstimatorView(scene->estimator, viewer));
   if (scene->adaptor) PetscCall(AbutAdaptorView(scene->adaptor, viewer));
   PetscCall(PetscViewerASCIIPopTab(viewer));

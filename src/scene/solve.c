@@ -60,8 +60,9 @@ static PetscErrorCode AbutSceneLoop_Private(AbutScene scene, PetscBool *converge
 static PetscErrorCode AbutSceneEstimate_Private(AbutScene scene, PetscBool *marks[], AbutAdaptVerdict *verdict, PetscInt *nmarked)
 {
   PetscFunctionBegin;
-  *verdict = ABUT_ADAPT_DONE;
-  *nmarked = 0;
+  *verdict                  = ABUT_ADAPT_DONE;
+  *nmarked                  = 0;
+  scene->unknowns_estimator = 0;
   for (PetscInt b = 0; b < scene->nbodies; ++b) {
     const AbutMeshTopology *t;
     AbutMesh                mesh;
@@ -73,6 +74,8 @@ static PetscErrorCode AbutSceneEstimate_Private(AbutScene scene, PetscBool *mark
     PetscCall(VecDestroy(&scene->eta[b]));
     PetscCall(AbutBodyCreateCellVec(scene->body[b], &scene->eta[b]));
     PetscCall(AbutEstimatorEstimate(scene->estimator, scene->body[b], scene->eta[b]));
+    PetscCall(AbutEstimatorGetUnknowns(scene->estimator, &n));
+    scene->unknowns_estimator += n;
     if (!scene->adaptor) continue;
     PetscCall(AbutBodyGetMesh(scene->body[b], &mesh));
     PetscCall(AbutMeshGetTopology(mesh, &t));
@@ -92,7 +95,8 @@ static PetscErrorCode AbutSceneAdapt_Private(AbutScene scene, PetscBool *const m
   if (scene->snes) {
     PetscCall(AbutInterfaceKeepTrace(scene->iface, scene->x));
     PetscCall(VecDestroy(&scene->x));
-    PetscCall(SNESDestroy(&scene->snes)); /* a new solver: what the old one remembers belongs to the old mesh, and not every type forgets it in SNESReset() */
+    PetscCall(SNESDestroy(
+      &scene->snes)); /* a new solver: what the old one remembers belongs to the old mesh, and not every type forgets it in SNESReset() */
     PetscCall(AbutSceneSolverFromOptions_Private(scene));
   }
   for (PetscInt b = 0; b < scene->nbodies; ++b) {
@@ -114,7 +118,7 @@ static PetscBool AbutSceneEnds_Private(AbutScene scene, PetscBool converged, Pet
 
   scene->status = failed ? 2 : 0;
   if (failed) return PETSC_TRUE;
-  if (!scene->interleave && !consistent) {
+  if (!consistent) {
     scene->verdict = "inconsistent";
     scene->status  = 2;
     return PETSC_TRUE;

@@ -37,7 +37,8 @@ static PetscErrorCode AbutMuParserOpen_Private(MPI_Comm comm, const char key[])
   PetscFunctionBegin;
   if (AbutMuParser.library) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; libraries[i] && !AbutMuParser.library; ++i) AbutMuParser.library = dlopen(libraries[i], RTLD_NOW | RTLD_LOCAL);
-  AbutCheckInput(AbutMuParser.library, comm, "%s: a formula needs the library muParser, which was not found; install libmuparser2v5, or give a number", key);
+  AbutCheckInput(AbutMuParser.library, comm,
+                 "%s: a formula needs the library muParser, which was not found; install libmuparser2v5, or give a number", key);
 #define ABUT_MUPARSER_SYMBOL(member, name) *(void **)&AbutMuParser.member = dlsym(AbutMuParser.library, name)
   ABUT_MUPARSER_SYMBOL(create, "mupCreate");
   ABUT_MUPARSER_SYMBOL(release, "mupRelease");
@@ -63,7 +64,8 @@ static PetscErrorCode AbutExpressionParse_Private(AbutExpression e)
   (*AbutMuParser.defineconst)(e->formula, "pi", PETSC_PI);
   (*AbutMuParser.setexpr)(e->formula, e->text);
   (void)(*AbutMuParser.eval)(e->formula);
-  AbutCheckInput(!(*AbutMuParser.error)(e->formula), e->comm, "%s: \"%s\" is not a formula in x and y (%s); give for example 1e-3*x^2", e->key, e->text, (*AbutMuParser.errormsg)(e->formula));
+  AbutCheckInput(!(*AbutMuParser.error)(e->formula), e->comm, "%s: \"%s\" is not a formula in x and y (%s); give for example 1e-3*x^2",
+                 e->key, e->text, (*AbutMuParser.errormsg)(e->formula));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -207,7 +209,8 @@ PetscErrorCode AbutExpressionEvaluate(AbutExpression e, const PetscReal x[2], Pe
     e->x[1] = x[1];
     *value  = (*AbutMuParser.eval)(e->formula);
   }
-  AbutCheckInput(!PetscIsInfOrNanReal(*value), e->comm, "%s: \"%s\" is not a finite number at (%g, %g)", e->key, e->text, (double)x[0], (double)x[1]);
+  AbutCheckInput(!PetscIsInfOrNanReal(*value), e->comm, "%s: \"%s\" is not a finite number at (%g, %g)", e->key, e->text, (double)x[0],
+                 (double)x[1]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

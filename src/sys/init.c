@@ -4,7 +4,8 @@
 
 /* Where the message of a bad input goes, and that of a file that could not be written: one line, once, from the first rank. Everything else is a defect and
    keeps PETSc's traceback. */
-static PetscErrorCode AbutErrorHandler_Private(MPI_Comm comm, int line, const char *fun, const char *file, PetscErrorCode n, PetscErrorType p, const char *mess, void *ctx)
+static PetscErrorCode AbutErrorHandler_Private(MPI_Comm comm, int line, const char *fun, const char *file, PetscErrorCode n,
+                                               PetscErrorType p, const char *mess, void *ctx)
 {
   PetscMPIInt rank = 0;
 
@@ -16,7 +17,8 @@ static PetscErrorCode AbutErrorHandler_Private(MPI_Comm comm, int line, const ch
 }
 
 /* Instead of a traceback, the first message of PETSc, without line breaks, in a text of ABUT_MESSAGE characters */
-PetscErrorCode AbutErrorKeep_Private(PETSC_UNUSED MPI_Comm comm, PETSC_UNUSED int line, PETSC_UNUSED const char *fun, PETSC_UNUSED const char *file, PetscErrorCode n, PetscErrorType p, const char *mess, void *ctx)
+PetscErrorCode AbutErrorKeep_Private(PETSC_UNUSED MPI_Comm comm, PETSC_UNUSED int line, PETSC_UNUSED const char *fun,
+                                     PETSC_UNUSED const char *file, PetscErrorCode n, PetscErrorType p, const char *mess, void *ctx)
 {
   char *said = (char *)ctx;
 
@@ -35,11 +37,14 @@ static PetscErrorCode AbutInsertSceneFile_Private(const char file[])
 
   PetscFunctionBegin;
   PetscCall(PetscTestFile(file, 'r', &exists));
-  AbutCheckInput(exists, PETSC_COMM_WORLD, "scene file \"%s\": no such file, or not readable; give the path of a scene, for example examples/layers/layers.yml", file);
+  AbutCheckInput(exists, PETSC_COMM_WORLD,
+                 "scene file \"%s\": no such file, or not readable; give the path of a scene, for example examples/layers/layers.yml",
+                 file);
   PetscCall(PetscPushErrorHandler(AbutErrorKeep_Private, said));
   ierr = PetscOptionsInsertFile(PETSC_COMM_WORLD, NULL, file, PETSC_TRUE);
   PetscCall(PetscPopErrorHandler());
-  AbutCheckInput(!ierr, PETSC_COMM_WORLD, "scene file \"%s\": cannot be read as %s; it may be cut off: compare it with examples/layers/layers.yml", file,
+  AbutCheckInput(!ierr, PETSC_COMM_WORLD,
+                 "scene file \"%s\": cannot be read as %s; it may be cut off: compare it with examples/layers/layers.yml", file,
                  strstr(file, ".y") ? "YAML" : "PETSc options");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -121,7 +126,10 @@ PetscErrorCode AbutInitialize(int *argc, char ***args, const char help[])
   PetscCall(PetscInitialize(&nrest, &rest, NULL, help));
   PetscFunctionBegin;
   PetscCall(PetscPushErrorHandler(AbutErrorHandler_Private, NULL));
-  AbutCheckInput(!stray, PETSC_COMM_WORLD, "\"%s\" belongs to no key; only the first word may be a scene file, further ones follow -options_file, and keys begin with a dash", stray);
+  AbutCheckInput(!stray, PETSC_COMM_WORLD,
+                 "\"%s\" belongs to no key; only the first word may be a scene file, further ones follow -options_file, and keys begin "
+                 "with a dash",
+                 stray);
   PetscCall(AbutInsertScene_Private(nfiles, files));
   free(files); /* PETSc keeps pointing into rest, as it does into argv: it lives as long as the program */
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -27,7 +27,8 @@ static PetscErrorCode AbutOptionsKey_Private(AbutOptionItems PetscOptionsObject,
 
 .seealso: `AbutOptionsReal()`, `AbutOptionsCheckAllRead()`
 @*/
-PetscErrorCode AbutOptionsString(AbutOptionItems PetscOptionsObject, const char opt[], const char text[], char value[], size_t len, PetscBool *set)
+PetscErrorCode AbutOptionsString(AbutOptionItems PetscOptionsObject, const char opt[], const char text[], char value[], size_t len,
+                                 PetscBool *set)
 {
   PetscBool given;
 
@@ -38,7 +39,8 @@ PetscErrorCode AbutOptionsString(AbutOptionItems PetscOptionsObject, const char 
 }
 
 /* Splits "a, b, c" into numbers and demands exactly n of them */
-static PetscErrorCode AbutOptionsNumbers_Private(AbutOptionItems PetscOptionsObject, const char opt[], const char text[], PetscInt n, PetscReal value[], PetscBool integer, PetscBool *set)
+static PetscErrorCode AbutOptionsNumbers_Private(AbutOptionItems PetscOptionsObject, const char opt[], const char text[], PetscInt n,
+                                                 PetscReal value[], PetscBool integer, PetscBool *set)
 {
   char        given[1024] = "", key[256], kind[64] = "a number", *end;
   const char *at = given;
@@ -56,8 +58,8 @@ static PetscErrorCode AbutOptionsNumbers_Private(AbutOptionItems PetscOptionsObj
     const int    last = i + 1 == n;
 
     while (*end == ' ') ++end;
-    AbutCheckInput(end != at && *end == (last ? '\0' : ',') && PetscIsNormalReal(v ? v : 1.) && (!integer || (v == (double)(PetscInt)v)), PetscOptionsObject->comm,
-                   "%s: \"%s\" is not %s (%s)", key, given, kind, text);
+    AbutCheckInput(end != at && *end == (last ? '\0' : ',') && PetscIsNormalReal(v ? v : 1.) && (!integer || (v == (double)(PetscInt)v)),
+                   PetscOptionsObject->comm, "%s: \"%s\" is not %s (%s)", key, given, kind, text);
     value[i] = v;
     at       = end + 1;
   }
@@ -83,7 +85,8 @@ static PetscErrorCode AbutOptionsNumbers_Private(AbutOptionItems PetscOptionsObj
 
 .seealso: `AbutOptionsReal()`
 @*/
-PetscErrorCode AbutOptionsReals(AbutOptionItems PetscOptionsObject, const char opt[], const char text[], PetscInt n, PetscReal value[], PetscBool *set)
+PetscErrorCode AbutOptionsReals(AbutOptionItems PetscOptionsObject, const char opt[], const char text[], PetscInt n, PetscReal value[],
+                                PetscBool *set)
 {
   PetscFunctionBegin;
   PetscCall(AbutOptionsNumbers_Private(PetscOptionsObject, opt, text, n, value, PETSC_FALSE, set));
@@ -137,7 +140,8 @@ PetscErrorCode AbutOptionsReal(AbutOptionItems PetscOptionsObject, const char op
 
 .seealso: `AbutOptionsInt()`
 @*/
-PetscErrorCode AbutOptionsInts(AbutOptionItems PetscOptionsObject, const char opt[], const char text[], PetscInt n, PetscInt value[], PetscBool *set)
+PetscErrorCode AbutOptionsInts(AbutOptionItems PetscOptionsObject, const char opt[], const char text[], PetscInt n, PetscInt value[],
+                               PetscBool *set)
 {
   PetscReal v[8];
   PetscBool given;
@@ -194,14 +198,15 @@ PetscErrorCode AbutOptionsInt(AbutOptionItems PetscOptionsObject, const char opt
 
 .seealso: `AbutOptionsString()`
 @*/
-PetscErrorCode AbutOptionsEnum(AbutOptionItems PetscOptionsObject, const char opt[], const char text[], const char *const names[], PetscInt *value, PetscBool *set)
+PetscErrorCode AbutOptionsEnum(AbutOptionItems PetscOptionsObject, const char opt[], const char text[], const char *const names[],
+                               PetscInt *value, PetscBool *set)
 {
   char      given[256] = "", key[256], all[512] = "";
   PetscBool flg, match;
 
   PetscFunctionBegin;
   PetscCall(AbutOptionsKey_Private(PetscOptionsObject, opt, key, sizeof(key)));
-  PetscCall(PetscOptionsString(opt, text, NULL, given, given, sizeof(given), &flg));
+  PetscCall(PetscOptionsString(opt, text, NULL, names[*value], given, sizeof(given), &flg));
   if (set) *set = flg;
   if (!flg) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; names[i]; ++i) {
@@ -251,7 +256,8 @@ PetscErrorCode AbutOptionsBool(AbutOptionItems PetscOptionsObject, const char op
 /* Options that PETSc reads before we start or after we end, or when a factor, a viewer or a log is made */
 static PetscBool AbutOptionsIsLate_Private(const char name[])
 {
-  static const char *const start[] = {"log_", "malloc", "objects_dump", "options_", "memory_", "on_error", "start_in_", "fp_trap", "help", "version", "info", "skip_petscrc", "checkstack", "get_total", NULL};
+  static const char *const start[]  = {"log_", "malloc",  "objects_dump", "options_",     "memory_",    "on_error",  "start_in_", "fp_trap",
+                                       "help", "version", "info",         "skip_petscrc", "checkstack", "get_total", NULL};
   static const char *const inside[] = {"mat_mumps_", "_view", "pc_hypre_", "_converged_reason", NULL};
 
   for (PetscInt i = 0; start[i]; ++i)
@@ -284,11 +290,15 @@ PetscErrorCode AbutOptionsCheckAllRead(MPI_Comm comm, PetscBool final)
   for (PetscInt i = 0; i < n; ++i) {
     const PetscBool late = AbutOptionsIsLate_Private(names[i]);
 
-    if (late && (!final || !strncmp(names[i], "objects_dump", 12) || !strncmp(names[i], "malloc", 6) || !strncmp(names[i], "options_", 8))) continue;
+    if (late && (!final || !strncmp(names[i], "objects_dump", 12) || !strncmp(names[i], "malloc", 6) || !strncmp(names[i], "options_", 8)))
+      continue;
     PetscCall(PetscStrlcat(list, nbad++ ? ", " : "", sizeof(list)));
     PetscCall(PetscStrlcat(list, names[i], sizeof(list)));
   }
   PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
-  AbutCheckInput(!nbad, comm, "%s: nothing in this scene reads %s; check the spelling (-help lists the keys), and that the scene names the body, pair or effect it belongs to", list, nbad > 1 ? "these keys" : "this key");
+  AbutCheckInput(!nbad, comm,
+                 "%s: nothing in this scene reads %s; check the spelling (-help lists the keys), and that the scene names the body, pair "
+                 "or effect it belongs to",
+                 list, nbad > 1 ? "these keys" : "this key");
   PetscFunctionReturn(PETSC_SUCCESS);
 }

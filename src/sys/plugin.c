@@ -128,7 +128,8 @@ PetscErrorCode AbutPluginAppend(MPI_Comm comm, const char path[])
   PetscBool found;
 
   PetscFunctionBegin;
-  PetscCall(PetscSNPrintf(file, sizeof(file), "%s%s", strchr(path, '/') ? "" : "./", path)); /* without a slash the system would search its own folders */
+  PetscCall(PetscSNPrintf(file, sizeof(file), "%s%s", strchr(path, '/') ? "" : "./",
+                          path)); /* without a slash the system would search its own folders */
   PetscCall(AbutPluginTestFile_Private(comm, file, &found));
   AbutCheckInput(found, comm, "plugin: no file \"%s\"", path);
   PetscCall(AbutPluginOpen_Private(comm, file));

@@ -19,26 +19,26 @@ struct _p_AbutBody {
   AbutCondition condition[ABUT_MAX_SIDES][2];
 
   /* of the present mesh */
-  PetscInt      generation;  /* of the mesh for which the rest was made, -1 if it is to be made anew */
-  Mat           A;           /* stiffness, rows and columns of prescribed unknowns replaced by mu on the diagonal */
-  Mat           Ac;          /* rows of the stiffness at the prescribed unknowns: for the lift and the reactions */
-  IS            constrained; /* owned prescribed unknowns, global numbers */
-  Vec           prescribed;  /* their values, laid out like the rows of Ac */
-  Vec           load, lift;  /* nodal forces of the tractions; -Ac^T times the prescribed values */
-  Vec           contact;     /* nodal contact forces of the last solve */
-  Vec           rhs, u;      /* u has ghost values */
-  PetscReal    *vertexu;     /* [2*nvertices] displacement at all local vertices, hanging ones too */
-  AbutBoundary *boundary;    /* skeleton: contours, nodes, sides; no values */
+  PetscInt      generation;     /* of the mesh for which the rest was made, -1 if it is to be made anew */
+  Mat           A;              /* stiffness, rows and columns of prescribed unknowns replaced by mu on the diagonal */
+  Mat           Ac;             /* rows of the stiffness at the prescribed unknowns: for the lift and the reactions */
+  IS            constrained;    /* owned prescribed unknowns, global numbers */
+  Vec           prescribed;     /* their values, laid out like the rows of Ac */
+  Vec           load, lift;     /* nodal forces of the tractions; -Ac^T times the prescribed values */
+  Vec           contact;        /* nodal contact forces of the last solve */
+  Vec           rhs, u;         /* u has ghost values */
+  PetscReal    *vertexu;        /* [2*nvertices] displacement at all local vertices, hanging ones too */
+  AbutBoundary *boundary;       /* skeleton: contours, nodes, sides; no values */
   PetscInt     *boundaryglobal; /* [n] global vertex numbers of its nodes */
-  VecScatter    toboundary;  /* from a vector of unknowns to [2*n] values on every rank */
+  VecScatter    toboundary;     /* from a vector of unknowns to [2*n] values on every rank */
   Vec           onboundary;
   AbutSide      side[ABUT_MAX_SIDES];
 
-  KSP           ksp;
-  PetscBool     userksp;     /* the user chose the solver: size does not */
-  PetscInt      solves, iterations;
-  PetscReal     assemblytime;
-  PetscInt      assemblycells;
+  KSP       ksp;
+  PetscBool userksp; /* the user chose the solver: size does not */
+  PetscInt  solves, iterations;
+  PetscReal assemblytime;
+  PetscInt  assemblycells;
 };
 
 PETSC_INTERN PetscErrorCode AbutBodySetConditionsFromOptions_Private(AbutBody, AbutOptionItems, char[], size_t);

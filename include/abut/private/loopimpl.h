@@ -16,21 +16,21 @@ struct _p_AbutInterface {
   AbutPair *pair;
 
   /* of the present meshes; index t = 2*pair+side */
-  PetscBool    setupcalled;
-  PetscInt    *offset;  /* [2*npairs+1] where each side's values begin among all */
-  PetscInt     nowned;  /* values owned by this rank, each by the owner of its node */
-  PetscInt    *owned;   /* [nowned] their places among all */
-  PetscInt    *place;   /* [all] the place of the k-th value in the order of the ranks */
-  VecScatter   toall;
-  Vec          everywhere;
-  PetscReal    gamma;   /* the user's relaxation, 0 for the automatic one */
-  PetscReal   *x, *g;   /* [all] the trace of the last sweep and its image, on every rank */
-  PetscReal   *xbest;   /* [all] the trace of least residual since the set-up */
-  PetscReal  **p;       /* [npairs] the pressures of the last sweep */
-  Vec         *force;   /* [nbodies] nodal contact forces */
+  PetscBool   setupcalled;
+  PetscInt   *offset; /* [2*npairs+1] where each side's values begin among all */
+  PetscInt    nowned; /* values owned by this rank, each by the owner of its node */
+  PetscInt   *owned;  /* [nowned] their places among all */
+  PetscInt   *place;  /* [all] the place of the k-th value in the order of the ranks */
+  VecScatter  toall;
+  Vec         everywhere;
+  PetscReal   gamma; /* the user's relaxation, 0 for the automatic one */
+  PetscReal  *x, *g; /* [all] the trace of the last sweep and its image, on every rank */
+  PetscReal  *xbest; /* [all] the trace of least residual since the set-up */
+  PetscReal **p;     /* [npairs] the pressures of the last sweep */
+  Vec        *force; /* [nbodies] nodal contact forces */
 
-  Vec              G;      /* image of the trace of the last sweep */
-  PetscObjectId    id;     /* of that trace vector, and its state then: a second look at the same point is no sweep */
+  Vec              G;  /* image of the trace of the last sweep */
+  PetscObjectId    id; /* of that trace vector, and its state then: a second look at the same point is no sweep */
   PetscObjectState state;
   PetscInt         sweeps, startsweeps;
   PetscReal        residual, pressureresidual; /* |G-x|/|G| and the same of the pressures, of the last sweep */

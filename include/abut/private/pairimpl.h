@@ -20,19 +20,20 @@ struct _p_AbutPair {
   PETSCHEADER(int);
   AbutBody         body[2];
   PetscInt         side[2];
-  AbutExpression   gap;      /* NULL: the distance of the sides */
+  AbutExpression   gap; /* NULL: the distance of the sides */
   PetscReal        penalty, theta, height;
   PetscBool        thetaset;
   AbutPressureSide pressureside;
 
   /* of the present meshes */
   PetscInt        generation[2];
-  PetscInt        which;    /* the side that carries the pressures */
-  PetscInt        n[2];     /* nodes of both sides */
+  PetscInt        which; /* the side that carries the pressures */
+  PetscInt        n[2];  /* nodes of both sides */
   PetscInt        nsegments;
   AbutSegment    *segment;
-  PetscReal      *D, *F;    /* [n[which]] integrals of psi_i and of psi_i times the gap; D = 0: the node carries no pressure */
-  PetscReal      *work;     /* [n[which]] */
+  PetscReal       overlap[2]; /* the part of the pressure side that the other one faces: distances from its first node */
+  PetscReal      *D, *F;      /* [n[which]] integrals of psi_i and of psi_i times the gap; D = 0: the node carries no pressure */
+  PetscReal      *work;       /* [n[which]] */
   const AbutSide *nodes[2];
 };
 

@@ -25,23 +25,23 @@ typedef enum {
 
 struct _p_AbutScene {
   PETSCHEADER(int);
-  PetscInt       nbodies, npairs, nprobes;
-  AbutBody       body[ABUT_MAX_NAMES];
-  AbutPair       pair[ABUT_MAX_NAMES];
-  AbutProbe      probe[ABUT_MAX_NAMES];
-  PetscBool      estimates[ABUT_MAX_NAMES]; /* bodies whose error is estimated, and adapted if there is an adaptor */
-  AbutInterface  iface;
-  SNES           snes;      /* NULL without pairs */
-  AbutEstimator  estimator; /* NULL unless asked for */
-  AbutAdaptor    adaptor;   /* NULL unless asked for */
-  AbutRecorder   recorder;
-  PetscInt       start;
-  PetscBool      interleave, setupcalled;
-  PetscReal      eps_u;
+  PetscInt      nbodies, npairs, nprobes;
+  AbutBody      body[ABUT_MAX_NAMES];
+  AbutPair      pair[ABUT_MAX_NAMES];
+  AbutProbe     probe[ABUT_MAX_NAMES];
+  PetscBool     estimates[ABUT_MAX_NAMES]; /* bodies whose error is estimated, and adapted if there is an adaptor */
+  AbutInterface iface;
+  SNES          snes;      /* NULL without pairs */
+  AbutEstimator estimator; /* NULL unless asked for */
+  AbutAdaptor   adaptor;   /* NULL unless asked for */
+  AbutRecorder  recorder;
+  PetscInt      start;
+  PetscBool     interleave, setupcalled;
+  PetscReal     eps_u;
 
-  Vec            x;         /* the trace */
+  Vec            x; /* the trace */
   Vec            eta[ABUT_MAX_NAMES];
-  PetscInt       cycle, sweepsbefore;
+  PetscInt       cycle, sweepsbefore, unknowns_estimator;
   PetscLogDouble begun, mark, seconds[ABUT_TIMES];
   const char    *verdict;
   PetscInt       status;
