@@ -86,10 +86,9 @@ typedef struct {
   PetscReal         *u;         /* [2*n] displacement there */
   PetscInt          *side;      /* [n] side number of the element */
   AbutConditionType *condition; /* [2*n] what is known on the element, per component */
-  PetscReal *
-    traction; /* [4*n] given traction: (t1,t2) at the start, (t1,t2) at the end; the L2 projection of the prescribed one; 0 where none is given */
-  PetscReal *reaction; /* [2*n] nodal forces by which prescribed displacements hold the body, K u - f, 0 elsewhere */
-  PetscReal *contact;  /* [2*n] nodal contact forces on the body */
+  PetscReal         *traction;  /* [4*n] given traction, L2 projection: (t1,t2) at the start, (t1,t2) at the end; 0 where none is given */
+  PetscReal         *reaction;  /* [2*n] nodal forces by which prescribed displacements hold the body, K u - f, 0 elsewhere */
+  PetscReal         *contact;   /* [2*n] nodal contact forces on the body */
 } AbutBoundary;
 PETSC_EXTERN PetscErrorCode AbutBodyGetBoundary(AbutBody, AbutBoundary **);
 PETSC_EXTERN PetscErrorCode AbutBoundaryDestroy(AbutBoundary **);

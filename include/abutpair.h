@@ -19,9 +19,8 @@ typedef struct _p_AbutPair *AbutPair;
 typedef struct {
   PetscReal force; /* integral of p */
   PetscReal pressure_max, pressure_min;
-  PetscReal contact_length; /* sum of the nodal lengths D_i over active nodes */
-  PetscReal
-    contact_edge; /* where the penetration changes sign, along the side from its first closed end; the half-width in a symmetric half model */
+  PetscReal contact_length;  /* sum of the nodal lengths D_i over active nodes */
+  PetscReal contact_edge;    /* where the penetration changes sign, from the closed end of the shared part; else half the contact's width */
   PetscReal penetration_max; /* of the averaged nodal penetration */
   PetscReal complementarity; /* max_i p_i*|p_i*theta - penetration_i| over the largest p*penetration */
   PetscReal balance;         /* |sum of forces on both sides| / force */

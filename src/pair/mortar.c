@@ -22,15 +22,6 @@ static PetscErrorCode AbutPairProject_Private(AbutPair pair, PetscReal *s[2], Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscInt AbutPairCountWithin_Private(PetscInt n, const PetscReal s[], PetscReal from, PetscReal to)
-{
-  PetscInt count = 0;
-
-  for (PetscInt i = 0; i < n; ++i)
-    if (s[i] >= from && s[i] <= to) ++count;
-  return count;
-}
-
 /* The side with more nodes on the common part carries the pressures, the first one if equal */
 static void AbutPairChoosePressureSide_Private(AbutPair pair)
 {
@@ -48,7 +39,7 @@ static void AbutPairChoosePressureSide_Private(AbutPair pair)
       box[2 + d] = PetscMax(box[2 + d], other->x[2 * i + d]);
     }
     for (PetscInt i = 0; i < own->n; ++i)
-      if (AbutPairCountWithin_Private(1, own->x + 2 * i + d, box[d], box[2 + d])) ++count[k];
+      if (own->x[2 * i + d] >= box[d] && own->x[2 * i + d] <= box[2 + d]) ++count[k];
   }
   pair->which = count[1] > count[0];
 }
