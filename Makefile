@@ -10,8 +10,8 @@ ifdef PETSC_DIR
 export PATH := $(PETSC_DIR)/$(PETSC_ARCH)/bin:$(PATH)
 endif
 
-# What config/setup.sh found: CC, PYTHON, PETSC, DEPS_CFLAGS, DEPS_LIBS, CHECK_CFLAGS, CHECK_LIBS. It rewrites the file only when an answer
-# changed, and GNU make then starts again with the new one. Only the goals below may install packages, and only as root on Debian.
+# What config/setup.sh found: CC, PYTHON, PETSC, DEPS_CFLAGS, DEPS_LIBS, CHECK_CFLAGS, CHECK_LIBS, SLEPC_CFLAGS, SLEPC_LIBS. It rewrites the file
+# only when an answer changed, and GNU make then starts again with the new one. Only the goals below may install packages, and only as root on Debian.
 INSTALLING = run test check asan setup
 NO_SETUP   = clean deps deps-dev format lint
 ifneq ($(filter-out $(NO_SETUP),$(or $(MAKECMDGOALS),all)),)
@@ -36,7 +36,7 @@ RPATH    = -Wl,-rpath,'$$ORIGIN/../lib'
 all: $(LIB) $(PLUGINS:%=$(B)/lib/lib%.so) $(ABUT)
 
 $(LIB): $(LIB_OBJ) | $(B)/lib
-	$(LINK) -shared -Wl,-soname,libabut.so $^ -o $@ $(DEPS_LIBS) -lm -ldl
+	$(LINK) -shared -Wl,-soname,libabut.so $^ -o $@ $(SLEPC_LIBS) $(DEPS_LIBS) -lm -ldl
 
 $(B)/bin/abut: $(APP_OBJ) $(LIB) | $(B)/bin
 	$(LINK) $(APP_OBJ) -o $@ -L$(B)/lib -labut $(RPATH) $(DEPS_LIBS) -lm
@@ -60,6 +60,7 @@ $(B)/obj/tests/%.o: CPPFLAGS += $(PLUGINS:%=-Iplugins/%) $(CHECK_CFLAGS)
 $(B)/obj/%.o: %.c $(B)/config.mk
 	@mkdir -p $(@D)
 	$(say)$(CC) -std=gnu99 $(WARNINGS) $(CFLAGS) -fPIC -MMD -MP -Iinclude $(CPPFLAGS) $(DEPS_CFLAGS) -c $< -o $@
+$(B)/obj/src/loop/spectrum.o: CPPFLAGS += $(SLEPC_CFLAGS)
 -include $(shell test -d $(B)/obj && find $(B)/obj -name '*.d')
 $(B)/bin $(B)/lib $(B)/tests:
 	@mkdir -p $@
@@ -72,6 +73,10 @@ run: all
 	$(B)/bin/abut $(LAYERS)
 	@$(PYTHON) examples/layers/compare.py out
 	@$(PYTHON) examples/layers/plot.py out
+
+# what an answer takes with every loop, some 700 runs: see examples/studies/loops
+study-loops: all
+	@$(PYTHON) examples/studies/loops/loops.py --abut $(B)/bin/abut --out out
 
 # make test T=layers runs what has "layers" in its name
 test: all $(CHECKS)
@@ -106,5 +111,5 @@ VERSION = $(shell sed -n 's/^version: *//p' CITATION.cff)
 clean:
 	rm -rf $(B) out
 FORCE:
-.PHONY: all run test check asan setup deps deps-dev format lint install clean FORCE
+.PHONY: all run study-loops test check asan setup deps deps-dev format lint install clean FORCE
 .DELETE_ON_ERROR:

@@ -13,6 +13,7 @@ if [ -n "${PETSC_DIR-}" ]; then
 fi
 has() { command -v "$1" >/dev/null 2>&1; }
 pc() { pkg-config "$@" 2>/dev/null; }
+may_install() { [ "$install" = install ] && [ "$(id -u)" = 0 ] && has apt-get; }
 
 # The Python that can draw; Debian's packages belong to /usr/bin/python3, which need not be the first on the path
 find_python() {
@@ -23,7 +24,7 @@ find_python() {
 
 # PETSc and the HDF5 it was built with go by several names
 find_flags() {
-  CC=mpicc petsc='' cflags='' libs='' check_cflags='' check_libs=''
+  CC=mpicc petsc='' cflags='' libs='' check_cflags='' check_libs='' slepc_cflags='' slepc_libs=''
   has pkg-config || return
   for name in PETSc petsc; do pc --exists $name && petsc=$name && break; done
   if [ -n "$petsc" ]; then
@@ -41,6 +42,24 @@ find_flags() {
   [ -z "${P4EST_DIR-}" ] || cflags="-I$P4EST_DIR/include $cflags" libs="-L$P4EST_DIR/lib -Wl,-rpath,$P4EST_DIR/lib $libs"
   libs="-lp4est -lsc $libs" cflags="$cflags $(pc --cflags muparser)"
   check_cflags=$(pc --cflags check) check_libs=$(pc --libs check)
+  find_slepc
+}
+
+# SLEPc is optional, and must belong to this PETSc: a program with both has only one libpetsc
+find_slepc() {
+  slepc_cflags='' slepc_libs=''
+  program=$(mktemp)
+  for name in slepc SLEPc; do
+    [ -n "$petsc" ] && pc --exists $name || continue
+    words="$(pc --libs $name)"
+    [ -z "${PETSC_DIR-}" ] || words="$words -Wl,-rpath,$(pc --variable=libdir $name)"
+    echo 'int EPSCreate(void); int PetscFinalize(void); int main(void) { return EPSCreate() + PetscFinalize(); }' |
+      "$CC" -x c - -o "$program" $words $libs 2>/dev/null || continue
+    [ "$(ldd "$program" | grep -c libpetsc)" -le 1 ] || continue
+    slepc_cflags="-DABUT_HAVE_SLEPC $(pc --cflags-only-I $name)" slepc_libs=$words
+    break
+  done
+  rm -f "$program"
 }
 
 answers() {
@@ -52,6 +71,8 @@ DEPS_CFLAGS  = $cflags
 DEPS_LIBS    = $libs
 CHECK_CFLAGS = $check_cflags
 CHECK_LIBS   = $check_libs
+SLEPC_CFLAGS = $slepc_cflags
+SLEPC_LIBS   = $slepc_libs
 PYTHON       = $python
 END
 }
@@ -79,15 +100,11 @@ find_missing() {
   "$python" -c 'import ensurepip' 2>/dev/null || want "venv for Python 3" "python3-venv"
 }
 
-# SLEPc is optional, to build and to run
 install_packages() {
   log=$(mktemp)
   export DEBIAN_FRONTEND=noninteractive
   echo "Installing$packages"
-  if apt-get update >"$log" 2>&1; then
-    case $packages in *libpetsc-real-dev*) apt-cache show libslepc-real-dev >/dev/null 2>&1 && packages="$packages libslepc-real-dev" ;; esac
-    apt-get install -y --no-install-recommends $packages >>"$log" 2>&1 && rm "$log" && return
-  fi
+  apt-get update >"$log" 2>&1 && apt-get install -y --no-install-recommends $packages >>"$log" 2>&1 && rm "$log" && return
   tail -n 20 "$log" >&2
   echo "apt-get could not install$packages; its whole output is in $log" >&2
   exit 1
@@ -114,13 +131,18 @@ END
 find_python
 find_flags
 find_missing
-if [ -n "$missing" ] && [ "$install" = install ] && [ "$(id -u)" = 0 ] && has apt-get; then
+if [ -n "$missing" ] && may_install; then
   install_packages
   find_python
   find_flags
   find_missing
 fi
 [ -z "$missing" ] || say_missing
+if [ -z "$slepc_libs${PETSC_DIR-}" ] && may_install && apt-cache show libslepc-real-dev >/dev/null 2>&1; then
+  echo "Installing libslepc-real-dev, which is optional"
+  DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends libslepc-real-dev >/dev/null 2>&1
+  find_slepc
+fi
 
 if [ "$need" = contribute ]; then # the version .clang-format is written for; Debian 12 has 14, which cannot read it
   [ -x .venv/bin/clang-format ] || { "$python" -m venv .venv && .venv/bin/pip install --quiet clang-format==18.1.8; }

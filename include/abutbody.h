@@ -44,14 +44,25 @@ PETSC_EXTERN PetscErrorCode AbutBodyGetHeight(AbutBody, const PetscReal[2], Pets
 PETSC_EXTERN PetscErrorCode AbutBodyCreateVec(AbutBody, Vec *);
 PETSC_EXTERN PetscErrorCode AbutBodyCreateCellVec(AbutBody, Vec *);
 
+/* Rigid motions that no prescribed displacement resists, 0 to 3: in words and at points by box and conditions, as vectors on a mesh */
+PETSC_EXTERN PetscErrorCode AbutBodyGetFreeModeCount(AbutBody, PetscInt *);
+PETSC_EXTERN PetscErrorCode AbutBodyGetFreeModeName(AbutBody, PetscInt, char[], size_t);
+PETSC_EXTERN PetscErrorCode AbutBodyGetFreeMotion(AbutBody, PetscInt, const PetscReal[2], PetscReal[2]);
+PETSC_EXTERN PetscErrorCode AbutBodyGetFreeModes(AbutBody, PetscInt *, const Vec *[]);
+PETSC_EXTERN PetscErrorCode AbutBodyGetImbalance(AbutBody, PetscReal[]);
+
 /* Solve with the given nodal contact forces (a vector of AbutBodyCreateVec(), or NULL for none); the displacement stays in the body */
 PETSC_EXTERN PetscErrorCode AbutBodySolve(AbutBody, Vec);
+PETSC_EXTERN PetscErrorCode AbutBodySolveIncrement(AbutBody, Vec, Vec);
+PETSC_EXTERN PetscErrorCode AbutBodyUpdate(AbutBody, Vec, Vec);
+PETSC_EXTERN PetscErrorCode AbutBodyMove(AbutBody, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutBodyGetSolution(AbutBody, Vec *);
 PETSC_EXTERN PetscErrorCode AbutBodyGetSolveCounts(AbutBody, PetscInt *, PetscInt *);
 PETSC_EXTERN PetscErrorCode AbutBodyGetVertexDisplacement(AbutBody, const PetscReal *[]);
 PETSC_EXTERN PetscErrorCode AbutBodyGetEnergy(AbutBody, PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutBodyGetReaction(AbutBody, PetscReal[2], PetscReal[2]);
 PETSC_EXTERN PetscErrorCode AbutBodyGetLinearResidual(AbutBody, PetscReal *);
+PETSC_EXTERN PetscErrorCode AbutBodyGetLinearError(AbutBody, PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutBodyGetAssemblyCost(AbutBody, PetscReal *, PetscInt *);
 
 /* Stress (s11, s22, s12) of the last solve in local cell c at a reference point: [-1,1]^2 for quads, (0,0)(1,0)(0,1) for triangles */
@@ -72,6 +83,7 @@ typedef struct {
 PETSC_EXTERN PetscErrorCode AbutBodyGetSide(AbutBody, PetscInt, const AbutSide **);
 PETSC_EXTERN PetscErrorCode AbutBodyGetSideTrace(AbutBody, PetscInt, Vec, PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutBodyAddSideForce(AbutBody, PetscInt, const PetscReal[], Vec);
+PETSC_EXTERN PetscErrorCode AbutBodyGetFarSide(AbutBody, const PetscReal[2], PetscInt *, AbutConditionType *);
 PETSC_EXTERN PetscErrorCode AbutBodyGetSupportDisplacement(AbutBody, const PetscReal[2], const PetscReal[2], PetscReal *, PetscBool *);
 
 /* The whole boundary of a body after a solve, gathered on every rank: eq. (25), each element side on the boundary is one boundary element.

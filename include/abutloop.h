@@ -17,6 +17,7 @@ S*/
 typedef struct _p_AbutInterface *AbutInterface;
 
 #define SNESDDNEUMANN "ddneumann"
+#define SNESDDACTIVE  "ddactive"
 
 typedef enum {
   ABUT_START_WINKLER,
@@ -27,6 +28,8 @@ PETSC_EXTERN const char *const AbutStarts[];
 
 PETSC_EXTERN PetscClassId   ABUTINTERFACE_CLASSID;
 PETSC_EXTERN PetscErrorCode AbutInterfaceCreate(MPI_Comm, PetscInt, AbutBody[], PetscInt, AbutPair[], AbutInterface *);
+PETSC_EXTERN PetscErrorCode AbutInterfaceSetFromOptions(AbutInterface);
+PETSC_EXTERN PetscErrorCode AbutInterfaceCheck(AbutInterface);
 PETSC_EXTERN PetscErrorCode AbutInterfaceSetUp(AbutInterface);
 PETSC_EXTERN PetscErrorCode AbutInterfaceReset(AbutInterface);
 PETSC_EXTERN PetscErrorCode AbutInterfaceDestroy(AbutInterface *);
@@ -40,10 +43,23 @@ PETSC_EXTERN PetscErrorCode AbutInterfaceTransferTrace(AbutInterface, Vec);
 PETSC_EXTERN PetscErrorCode AbutInterfaceGetChange(AbutInterface, Vec, Vec, PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutInterfaceSetGamma(AbutInterface, PetscReal);
 PETSC_EXTERN PetscErrorCode AbutInterfaceGetGamma(AbutInterface, PetscReal *);
+PETSC_EXTERN PetscErrorCode AbutInterfaceJudgeGamma(AbutInterface, char[], size_t);
+PETSC_EXTERN PetscErrorCode AbutInterfaceSetSpectrum(AbutInterface, PetscBool);
+PETSC_EXTERN PetscErrorCode AbutInterfaceGetSpectrum(AbutInterface, PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutInterfaceGetResidual(AbutInterface, PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutInterfaceGetPressure(AbutInterface, PetscInt, const PetscReal *[]);
 PETSC_EXTERN PetscErrorCode AbutInterfaceGetPairState(AbutInterface, PetscInt, AbutPairState *);
 PETSC_EXTERN PetscErrorCode AbutInterfaceGetTrace(AbutInterface, PetscInt, PetscInt, const PetscReal *[]);
 PETSC_EXTERN PetscErrorCode AbutInterfaceSetSNES(AbutInterface, SNES);
 PETSC_EXTERN PetscErrorCode AbutInterfaceGetVerdict(AbutInterface, SNES, PetscBool *, const char *[]);
+PETSC_EXTERN PetscErrorCode AbutInterfaceGetFloating(AbutInterface, const char *[]);
 PETSC_EXTERN PetscErrorCode AbutLoopRegisterAll(void);
+
+/* Parts of the error of the bodies as they are, in the energy norm: relative to `norm`, the square root of twice their strain energy */
+typedef struct {
+  PetscReal loop;    /* what more sweeps would change */
+  PetscReal penalty; /* from there to exact contact, theta = 0: a bound */
+  PetscReal linear;  /* the linear solvers' */
+  PetscReal norm;    /* its square has the unit of an energy */
+} AbutErrors;
+PETSC_EXTERN PetscErrorCode AbutInterfaceGetErrors(AbutInterface, AbutErrors *, PetscReal[]);

@@ -22,6 +22,8 @@ typedef enum {
 } AbutShape;
 PETSC_EXTERN const char *const AbutShapes[];
 
+#define ABUT_LEVEL_MAX 28 /* of a p4est quadtree, one below P4EST_QMAXLEVEL */
+
 /* Plain arrays of the local part of a mesh, valid until the mesh adapts or is destroyed.
    Vertices are counted 0..nvertices-1 in the order of the DMPLEX; lengths in the unit of the scene. */
 typedef struct {
@@ -64,6 +66,7 @@ PETSC_EXTERN PetscErrorCode AbutMeshGetGeneration(AbutMesh, PetscInt *);
 /* Shape functions N[corners], their gradients G[2*corners] (1/length) and the Jacobian determinant of local cell c at a reference point:
    [-1,1]^2 for quads, (0,0)(1,0)(0,1) for triangles. The inverse map says whether the point lies in the cell (or on its border). */
 PETSC_EXTERN PetscErrorCode AbutMeshMapCell(AbutMesh, PetscInt, const PetscReal[2], PetscReal[2], PetscReal[], PetscReal[], PetscReal *);
+PETSC_EXTERN PetscErrorCode AbutMeshGetCellArea(AbutMesh, PetscInt, PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutMeshInvertCell(AbutMesh, PetscInt, const PetscReal[2], PetscReal[2], PetscBool *);
 
 /* The paper's measures of a mesh, Definitions 1-3, eq. (22) and Lemma 1; the same on all ranks */

@@ -20,9 +20,10 @@ typedef struct {
   PetscReal force; /* integral of p */
   PetscReal pressure_max, pressure_min;
   PetscReal contact_length;  /* sum of the nodal lengths D_i over active nodes */
-  PetscReal contact_edge;    /* where the penetration changes sign, from the closed end of the shared part; else half the contact's width */
+  PetscReal contact_edge;    /* where the penetration changes sign, or in exact contact the gap opens, from the closed end of the shared part; else half the
+                                contact's width */
   PetscReal penetration_max; /* of the averaged nodal penetration */
-  PetscReal complementarity; /* max_i p_i*|p_i*theta - penetration_i| over the largest p*penetration */
+  PetscReal complementarity; /* max_i p_i*|p_i*theta - penetration_i| over the largest pressure times what two layers and theta give under it */
   PetscReal balance;         /* |sum of forces on both sides| / force */
   PetscReal energy;          /* J_theta, eq. (15) */
   PetscInt  active, nodes;
@@ -37,13 +38,16 @@ PETSC_EXTERN PetscErrorCode AbutPairView(AbutPair, PetscViewer);
 PETSC_EXTERN PetscErrorCode AbutPairDestroy(AbutPair *);
 PETSC_EXTERN PetscErrorCode AbutPairGetName(AbutPair, const char *[]);
 PETSC_EXTERN PetscErrorCode AbutPairGetBodies(AbutPair, AbutBody[2], PetscInt[2]);
+PETSC_EXTERN PetscErrorCode AbutPairSetTheta(AbutPair, PetscReal);
 PETSC_EXTERN PetscErrorCode AbutPairGetTheta(AbutPair, PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutPairGetCompliance(AbutPair, PetscReal[2]);
 PETSC_EXTERN PetscErrorCode AbutPairGetSizes(AbutPair, PetscInt[2]);
 
 /* Traces u_n1, u_n2 at the nodes of the two sides (as ordered in AbutSide) -> nodal pressures; nodal pressures -> nodal normal forces on both sides */
+PETSC_EXTERN PetscErrorCode AbutPairComputePenetration(AbutPair, const PetscReal[], const PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutPairComputePressure(AbutPair, const PetscReal[], const PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutPairComputeForce(AbutPair, const PetscReal[], PetscReal[], PetscReal[]);
+PETSC_EXTERN PetscErrorCode AbutPairComputeSupport(AbutPair, PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutPairComputeWinkler(AbutPair, PetscReal[], PetscReal[], PetscBool *);
 PETSC_EXTERN PetscErrorCode AbutPairGetGap(AbutPair, const PetscReal[2], PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutPairGetPressureNodes(AbutPair, PetscInt *, PetscInt *, const PetscReal *[], const PetscReal *[]);

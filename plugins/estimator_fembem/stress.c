@@ -10,10 +10,42 @@ struct _n_FembemStress {
   PetscReal     kappa;
 };
 
+/* The rigid motion u = mean + i*turn*(z - center) nearest to the displacement of the nodes. It has no stress, but the error of the treecode
+   would grow with it: a body that contact alone holds may lie far from where it was drawn. */
+typedef struct {
+  PetscComplex mean, center;
+  PetscReal    turn;
+} RigidMotion;
+
+static inline PetscComplex Strained(const FembemBoundary *b, const RigidMotion *m, PetscInt i)
+{
+  return b->u[i] - m->mean - m->turn * PETSC_i * (b->z[i] - m->center);
+}
+
+static RigidMotion FindRigidMotion(const FembemBoundary *b)
+{
+  RigidMotion m    = {0., 0., 0.};
+  PetscReal   arms = 0., turn = 0.;
+
+  for (PetscInt i = 0; i < b->n; ++i) {
+    m.mean += b->u[i] / b->n;
+    m.center += b->z[i] / b->n;
+  }
+  for (PetscInt i = 0; i < b->n; ++i) {
+    const PetscComplex arm = PetscConjComplex(b->z[i] - m.center);
+
+    arms += PetscSqr(PetscAbsComplex(arm));
+    turn += PetscImaginaryPartComplex(arm * (b->u[i] - m.mean));
+  }
+  m.turn = turn / arms;
+  return m;
+}
+
 /* tolerance 0 asks for the direct sum */
 PetscErrorCode FembemStressCreate(const FembemBoundary *b, PetscReal tolerance, FembemStress *stress)
 {
-  FembemStress s;
+  const RigidMotion m = FindRigidMotion(b);
+  FembemStress      s;
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&s));
@@ -23,7 +55,7 @@ PetscErrorCode FembemStressCreate(const FembemBoundary *b, PetscReal tolerance, 
   for (PetscInt i = 0; i < b->n; ++i) {
     const PetscInt j = b->next[i];
 
-    FembemSourceSet(&s->source[i], b->z[i], b->z[j], b->u[i], b->u[j], b->t[2 * i], b->t[2 * i + 1], b->mat);
+    FembemSourceSet(&s->source[i], b->z[i], b->z[j], Strained(b, &m, i), Strained(b, &m, j), b->t[2 * i], b->t[2 * i + 1], b->mat);
   }
   if (tolerance > 0. && b->n >= FEMBEM_TREE_FROM) PetscCall(FembemTreeCreate(b->n, s->source, tolerance, &s->tree));
   *stress = s;

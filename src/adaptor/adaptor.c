@@ -3,8 +3,6 @@
 
 PetscClassId ABUTADAPTOR_CLASSID;
 
-#define ABUT_LEVEL_MAX 28 /* of a p4est quadtree, one below P4EST_QMAXLEVEL */
-
 static PetscLogEvent     ABUTADAPTOR_Mark;
 static PetscFunctionList AbutAdaptorList        = NULL;
 static PetscBool         AbutAdaptorInitialized = PETSC_FALSE;
@@ -26,6 +24,7 @@ static PetscErrorCode AbutAdaptorInitializePackage(void)
   PetscCall(PetscLogEventRegister("AbutMark", ABUTADAPTOR_CLASSID, &ABUTADAPTOR_Mark));
   PetscCall(PetscRegisterFinalize(AbutAdaptorFinalizePackage));
   PetscCall(AbutAdaptorRegister(ABUTADAPTORTHRESHOLD, AbutAdaptorCreate_Threshold));
+  PetscCall(AbutAdaptorRegister(ABUTADAPTOREQUAL, AbutAdaptorCreate_Equal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -65,7 +64,8 @@ PetscErrorCode AbutAdaptorCreate(MPI_Comm comm, AbutAdaptor *adaptor)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode AbutAdaptorClearBodies_Private(AbutAdaptor adaptor)
+/* All bodies are adapted */
+PetscErrorCode AbutAdaptorClearBodies_Private(AbutAdaptor adaptor)
 {
   PetscFunctionBegin;
   for (PetscInt i = 0; i < adaptor->nbodies; ++i) PetscCall(PetscFree(adaptor->body[i]));
@@ -100,7 +100,20 @@ PetscErrorCode AbutAdaptorDestroy(AbutAdaptor *adaptor)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode AbutAdaptorSetType_Private(AbutAdaptor adaptor, const char type[])
+/*@C
+   AbutAdaptorSetType - Chooses how cells are marked
+
+   Collective
+
+   Input Parameters:
++  adaptor - the adaptor
+-  type    - `ABUTADAPTORTHRESHOLD` or `ABUTADAPTOREQUAL`; the present type is left as it is
+
+   Level: intermediate
+
+.seealso: `AbutAdaptorSetFromOptions()`, `AbutAdaptorSetTarget()`
+@*/
+PetscErrorCode AbutAdaptorSetType(AbutAdaptor adaptor, AbutAdaptorType type)
 {
   PetscErrorCode (*create)(AbutAdaptor) = NULL;
   const char **registered               = NULL;
@@ -109,6 +122,7 @@ static PetscErrorCode AbutAdaptorSetType_Private(AbutAdaptor adaptor, const char
   PetscBool    same;
 
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(adaptor, ABUTADAPTOR_CLASSID, 1);
   PetscCall(PetscObjectTypeCompare((PetscObject)adaptor, type, &same));
   if (same) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFunctionListFind(AbutAdaptorList, type, &create));
@@ -160,8 +174,9 @@ static PetscErrorCode AbutAdaptorSetBodies_Private(AbutAdaptor adaptor, char lis
 .  adaptor - the adaptor
 
    Options Database Keys:
-+  -adaptor_type <threshold>       - how cells are chosen
-.  -adaptor_threshold <0.1>        - delta of eq. (27) of the paper: refine cells whose indicator is above
++  -adaptor_type <threshold,equal> - how cells are chosen
+.  -adaptor_threshold <0.1>        - threshold: delta of eq. (27) of the paper, refine cells whose indicator is above
+.  -adaptor_target <0.05>          - equal: end when the error of all bodies together is estimated to be at most this, relative
 .  -adaptor_bodies list            - names of the bodies to adapt, separated by commas; all if it is not given
 .  -adaptor_max_level <8>          - cells of this level are not refined any more; the first mesh has level 0
 -  -adaptor_max_unknowns <1000000> - of one body: no refinement that would pass it
@@ -181,9 +196,9 @@ PetscErrorCode AbutAdaptorSetFromOptions(AbutAdaptor adaptor)
   PetscValidHeaderSpecific(adaptor, ABUTADAPTOR_CLASSID, 1);
   if (((PetscObject)adaptor)->type_name) PetscCall(PetscStrncpy(type, ((PetscObject)adaptor)->type_name, sizeof(type)));
   PetscObjectOptionsBegin((PetscObject)adaptor);
-  PetscCall(AbutOptionsString(PetscOptionsObject, "-adaptor_type", "how cells are chosen for refinement: threshold", type, sizeof(type),
-                              NULL));
-  PetscCall(AbutAdaptorSetType_Private(adaptor, type));
+  PetscCall(AbutOptionsString(PetscOptionsObject, "-adaptor_type", "how cells are chosen for refinement: threshold, equal", type,
+                              sizeof(type), NULL));
+  PetscCall(AbutAdaptorSetType(adaptor, type));
   PetscCall(AbutOptionsString(PetscOptionsObject, "-adaptor_bodies", "names of the bodies to adapt, all if not given", list, sizeof(list),
                               &set));
   if (set) PetscCall(AbutAdaptorSetBodies_Private(adaptor, list));

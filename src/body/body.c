@@ -37,7 +37,7 @@ static PetscErrorCode AbutBodyInitializePackage_Private(void)
    Level: beginner
 
    Note:
-   Limits: plane strain, linear isotropic material, small displacements, order 1; a body that nothing holds is refused.
+   Limits: plane strain, linear isotropic material, small displacements, order 1.
 
 .seealso: `AbutBodySetFromOptions()`, `AbutBodySolve()`, `AbutBodyDestroy()`
 @*/
@@ -190,10 +190,19 @@ PetscErrorCode AbutBodySetUp(AbutBody body)
   PetscCall(AbutBodyBoundarySetUp_Private(body));
   PetscCall(AbutBodyConditionsSetUp_Private(body));
   PetscCall(AbutBodyAssemble_Private(body));
+  PetscCall(AbutBodyModesSetUp_Private(body));
   PetscCall(AbutBodyChooseSolver_Private(body, 2 * t->nglobal, PETSC_FALSE));
-  PetscCall(KSPSetOperators(body->ksp, body->A, body->A));
+  PetscCall(KSPSetOperators(body->ksp, body->A, body->P));
   PetscCall(AbutBodyGiveFactorRoom_Private(body));
   body->generation = generation;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* For what works on the vectors of a mesh */
+PetscErrorCode AbutBodyNeedSetUp_Private(AbutBody body)
+{
+  PetscFunctionBegin;
+  PetscCheck(body->generation >= 0, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call AbutBodySetUp() first");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -203,6 +212,7 @@ PetscErrorCode AbutBodyReset_Private(AbutBody body)
   PetscFunctionBegin;
   body->generation = -1;
   PetscCall(KSPReset(body->ksp));
+  PetscCall(AbutBodyModesReset_Private(body));
   PetscCall(MatDestroy(&body->A));
   PetscCall(MatDestroy(&body->Ac));
   PetscCall(ISDestroy(&body->constrained));

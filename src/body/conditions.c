@@ -251,46 +251,10 @@ PetscErrorCode AbutBodyConditionsSetUp_Private(AbutBody body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A body on which some rigid motion is free has no solution of its own: say which motion, rather than divide by almost zero */
-static PetscErrorCode AbutBodyCheckHeld_Private(AbutBody body)
-{
-  MPI_Comm    comm = PetscObjectComm((PetscObject)body);
-  const char *name = ((PetscObject)body)->name;
-  PetscReal   lower[2], upper[2], sum[2] = {0., 0.}, sum2 = 0., size;
-  PetscInt    nsides, n[2] = {0, 0};
-
-  PetscFunctionBegin;
-  PetscCall(AbutMeshGetBox(body->mesh, lower, upper));
-  PetscCall(AbutMeshGetSideCount(body->mesh, &nsides));
-  size = PetscMax(upper[0] - lower[0], upper[1] - lower[1]);
-  for (PetscInt s = 0; s < nsides; ++s)
-    for (PetscInt d = 0; d < 2; ++d) {
-      PetscReal ends[4], normal[2];
-
-      if (body->condition[s][d].type != ABUT_DISPLACEMENT) continue;
-      PetscCall(AbutMeshGetSideEnds(body->mesh, s, ends, normal));
-      for (PetscInt end = 0; end < 2; ++end) {
-        const PetscReal arm = (ends[2 * end + !d] - lower[!d]) / size;
-
-        ++n[d];
-        sum[d] += arm;
-        sum2 += arm * arm;
-      }
-    }
-  for (PetscInt d = 0; d < 2; ++d)
-    AbutCheckInput(n[d], comm, "%s: nothing holds this body along %s; prescribe u%d on one of its sides, for example %s_bc_%s_u%d: 0", name,
-                   d ? "y" : "x", (int)d + 1, name, d ? "bottom" : "left", (int)d + 1);
-  /* a rotation about some point leaves all prescribed components in peace exactly if the arms are constant in each component */
-  AbutCheckInput(sum2 - sum[0] * sum[0] / n[0] - sum[1] * sum[1] / n[1] > 1e-10, comm,
-                 "%s: this body is free to turn; prescribe a displacement normal to a side of some length, for example %s_bc_bottom_u2: 0",
-                 name, name);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 #define ABUT_SAMPLES 32
 
 /*@
-   AbutBodyCheck - Ends the run if nothing holds the body, or if what is given on a side is not a finite number there; needs no mesh yet
+   AbutBodyCheck - Ends the run if what is given on a side is not a finite number there; needs no mesh yet
 
    Collective
 
@@ -300,9 +264,9 @@ static PetscErrorCode AbutBodyCheckHeld_Private(AbutBody body)
    Level: developer
 
    Note:
-   Looks at some points of each side. A traction may be infinite at an end.
+   Looks at some points of each side. A traction may be infinite at an end. Whether anything holds the body is asked by `AbutInterfaceCheck()`.
 
-.seealso: `AbutBodySetUp()`, `AbutPairCheck()`
+.seealso: `AbutBodySetUp()`, `AbutPairCheck()`, `AbutInterfaceCheck()`
 @*/
 PetscErrorCode AbutBodyCheck(AbutBody body)
 {
@@ -325,7 +289,33 @@ PetscErrorCode AbutBodyCheck(AbutBody body)
         PetscCall(AbutExpressionEvaluate(c->value, x, &value));
       }
     }
-  PetscCall(AbutBodyCheckHeld_Private(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutBodyGetFarSide - The side of a body that lies opposite to one with a given normal, and what is known there along that normal
+
+   Not Collective
+
+   Input Parameters:
++  body   - the body, a box
+-  normal - [2] outward unit normal
+
+   Output Parameters:
++  side - number of the opposite side
+-  type - traction, displacement or contact
+
+   Level: developer
+
+.seealso: `AbutBodyGetSupportDisplacement()`, `AbutBodyGetCondition()`
+@*/
+PetscErrorCode AbutBodyGetFarSide(AbutBody body, const PetscReal normal[2], PetscInt *side, AbutConditionType *type)
+{
+  const PetscInt d = PetscAbsReal(normal[0]) > PetscAbsReal(normal[1]) ? 0 : 1;
+
+  PetscFunctionBegin;
+  *side = 2 * d + (normal[d] > 0. ? 0 : 1);
+  *type = body->condition[*side][d].type;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -350,11 +340,14 @@ PetscErrorCode AbutBodyCheck(AbutBody body)
 PetscErrorCode AbutBodyGetSupportDisplacement(AbutBody body, const PetscReal x[2], const PetscReal normal[2], PetscReal *value,
                                               PetscBool *found)
 {
-  const PetscInt d = PetscAbsReal(normal[0]) > PetscAbsReal(normal[1]) ? 0 : 1, far = 2 * d + (normal[d] > 0. ? 0 : 1);
-  PetscReal      lower[2], upper[2], foot[2] = {x[0], x[1]};
+  PetscReal         lower[2], upper[2], foot[2] = {x[0], x[1]};
+  PetscInt          far, d;
+  AbutConditionType type;
 
   PetscFunctionBegin;
-  *found = (PetscBool)(body->condition[far][d].type == ABUT_DISPLACEMENT);
+  PetscCall(AbutBodyGetFarSide(body, normal, &far, &type));
+  d      = far / 2;
+  *found = (PetscBool)(type == ABUT_DISPLACEMENT);
   *value = 0.;
   if (!*found) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(AbutMeshGetBox(body->mesh, lower, upper));

@@ -1,118 +1,10 @@
 #include <abut/private/bodyimpl.h> /*I "abutbody.h" I*/
 #include <petsc/private/kspimpl.h> /* ksp->reason: there is no setter */
 
-/* Below this many unknowns a direct factor pays: it is used for every sweep, and takes 1 kB per unknown */
-#define ABUT_DIRECT_UNKNOWNS 1000000
-
-static PetscErrorCode AbutBodySetDirect_Private(AbutBody body)
-{
-  PC pc;
-
-  PetscFunctionBegin;
-  PetscCall(KSPGetPC(body->ksp, &pc));
-  PetscCall(KSPSetType(body->ksp, KSPPREONLY));
-  PetscCall(PCSetType(pc, PCCHOLESKY));
-  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode AbutBodySetIterative_Private(AbutBody body)
-{
-  PC pc;
-
-  PetscFunctionBegin;
-  PetscCall(KSPGetPC(body->ksp, &pc));
-  PetscCall(KSPSetType(body->ksp, KSPCG));
-  PetscCall(KSPSetNormType(body->ksp, KSP_NORM_UNPRECONDITIONED));
-  PetscCall(KSPSetTolerances(body->ksp, 1e-10, PETSC_DEFAULT, PETSC_DEFAULT, 1000));
-  PetscCall(KSPSetInitialGuessNonzero(body->ksp, PETSC_TRUE)); /* the last sweep's displacement */
-  PetscCall(PCSetType(pc, PCHYPRE));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Whoever reads no options gets the direct factor */
-PetscErrorCode AbutBodyCreateSolver_Private(AbutBody body)
-{
-  PetscFunctionBegin;
-  PetscCall(KSPCreate(PetscObjectComm((PetscObject)body), &body->ksp));
-  PetscCall(KSPSetOptionsPrefix(body->ksp, ((PetscObject)body)->prefix));
-  PetscCall(AbutBodySetDirect_Private(body));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Multigrid keeps what belongs to its first matrix (BoomerAMG the numbering of the unknowns, GAMG the sizes of its levels) and goes astray when a larger one
-   follows: each mesh gets a new preconditioner. At our strong threshold BoomerAMG takes 8 iterations where hypre's own 0.25 takes 94. */
-static PetscErrorCode AbutBodyRenewPreconditioner_Private(AbutBody body)
-{
-  char      name[256], type[64];
-  PetscBool factor, given = PETSC_TRUE;
-  PCType    present;
-  PC        pc;
-
-  PetscFunctionBegin;
-  PetscCall(KSPGetPC(body->ksp, &pc));
-  PetscCall(PetscObjectTypeCompareAny((PetscObject)pc, &factor, PCCHOLESKY, PCLU, ""));
-  if (factor) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PCGetType(pc, &present));
-  PetscCall(PetscStrncpy(type, present, sizeof(type)));
-  PetscCall(PetscSNPrintf(name, sizeof(name), "-%spc_hypre_boomeramg_strong_threshold", ((PetscObject)body)->prefix));
-  if (!strcmp(type, PCHYPRE)) PetscCall(PetscOptionsHasName(NULL, NULL, name, &given));
-  if (!given) PetscCall(PetscOptionsSetValue(NULL, name, "0.5"));
-  PetscCall(PCSetType(pc, PCNONE));
-  PetscCall(PCSetType(pc, type));
-  PetscCall(PCSetFromOptions(pc));
-  if (!given) PetscCall(PetscOptionsClearValue(NULL, name));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* With the 20 per cent of spare workspace that are its default, MUMPS 5.7 returns NaN from some symmetric factors on 3 or 4 ranks, and no error; with 35 it
-   did not any more. A -mat_mumps_icntl_14 of the user comes later. */
-PetscErrorCode AbutBodyGiveFactorRoom_Private(AbutBody body)
-{
-  MatSolverType solver = NULL;
-  PetscBool     mumps;
-  PC            pc;
-  Mat           factor;
-
-  PetscFunctionBegin;
-  PetscCall(KSPGetPC(body->ksp, &pc));
-  PetscCall(PCFactorGetMatSolverType(pc, &solver));
-  PetscCall(PetscStrcmp(solver, MATSOLVERMUMPS, &mumps));
-  if (!mumps) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PCFactorSetUpMatSolverType(pc));
-  PetscCall(PCFactorGetMatrix(pc, &factor));
-  PetscCall(MatMumpsSetIcntl(factor, 14, 60));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Our defaults first, the user's options over them. Before the first mesh its size is not known, and taken as small. */
-PetscErrorCode AbutBodyChooseSolver_Private(AbutBody body, PetscInt n, PetscBool readoptions)
-{
-  const char *prefix     = ((PetscObject)body)->prefix;
-  char        pctype[64] = "";
-  PetscBool   haspc, hasksp, factor;
-  PC          pc;
-
-  PetscFunctionBegin;
-  if (readoptions || (!body->userksp && n > ABUT_DIRECT_UNKNOWNS)) {
-    PetscCall(PetscOptionsGetString(NULL, prefix, "-pc_type", pctype, sizeof(pctype), &haspc));
-    PetscCall(PetscOptionsHasName(NULL, prefix, "-ksp_type", &hasksp));
-    body->userksp = (PetscBool)(haspc || hasksp);
-    factor        = (PetscBool)(!haspc || !strcmp(pctype, PCCHOLESKY) || !strcmp(pctype, PCLU));
-    PetscCall((factor && n <= ABUT_DIRECT_UNKNOWNS ? AbutBodySetDirect_Private : AbutBodySetIterative_Private)(body));
-    PetscCall(KSPGetPC(body->ksp, &pc));
-    if (haspc) {
-      PetscCall(PCSetType(pc, pctype));
-      if (factor) PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-    }
-    PetscCall(KSPSetFromOptions(body->ksp));
-  }
-  PetscCall(AbutBodyRenewPreconditioner_Private(body));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+/* Solves of a body, and what became of them */
 
 /* Displacement at every local vertex: that of a hanging one is the mean of the ends of the coarse side */
-static PetscErrorCode AbutBodySpread_Private(AbutBody body)
+PetscErrorCode AbutBodySpread_Private(AbutBody body)
 {
   const AbutMeshTopology *t;
   const PetscScalar      *ua;
@@ -135,6 +27,52 @@ static PetscErrorCode AbutBodySpread_Private(AbutBody body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What the present forces and prescribed displacements make of the right-hand side of A: mu times the value in a prescribed row */
+static PetscErrorCode AbutBodyRightHandSide_Private(AbutBody body, Vec b)
+{
+  const PetscInt    *row;
+  const PetscScalar *g;
+  PetscScalar       *a;
+  PetscInt           n, first;
+
+  PetscFunctionBegin;
+  PetscCall(VecWAXPY(b, 1., body->load, body->contact));
+  PetscCall(VecAXPY(b, 1., body->lift));
+  PetscCall(VecGetOwnershipRange(b, &first, NULL));
+  PetscCall(ISGetLocalSize(body->constrained, &n));
+  PetscCall(ISGetIndices(body->constrained, &row));
+  PetscCall(VecGetArrayRead(body->prescribed, &g));
+  PetscCall(VecGetArray(b, &a));
+  for (PetscInt i = 0; i < n; ++i) a[row[i] - first] = body->mu * g[i];
+  PetscCall(VecRestoreArray(b, &a));
+  PetscCall(VecRestoreArrayRead(body->prescribed, &g));
+  PetscCall(ISRestoreIndices(body->constrained, &row));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A x = rhs, both without a part along the free modes: that of the right-hand side has no solution, that of the solution is not determined.
+   KSPSolve() of PETSc 3.18 and 3.22 looks for the null space of the right-hand side in P, where there is none, so the right-hand side is
+   ours to clean; that of A keeps the directions of a Krylov method clean, but not its start. */
+static PetscErrorCode AbutBodySolveLinear_Private(AbutBody body, Vec x)
+{
+  PetscInt  its;
+  PetscReal size;
+
+  PetscFunctionBegin;
+  PetscCall(MatNullSpaceRemove(body->free, body->rhs));
+  PetscCall(KSPSolve(body->ksp, body->rhs, x));
+  PetscCall(MatNullSpaceRemove(body->free, x));
+  PetscCall(VecNorm(x, NORM_INFINITY, &size));
+  if (PetscIsInfOrNanReal(size)) { /* a factor may be spoilt without saying so: the caller asks the KSP, and finds zeros instead of NaN */
+    body->ksp->reason = KSP_DIVERGED_NANORINF;
+    PetscCall(VecZeroEntries(x));
+  }
+  PetscCall(KSPGetIterationNumber(body->ksp, &its));
+  ++body->solves;
+  body->iterations += its;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
    AbutBodySolve - Solves the body with given nodal contact forces: one body's part of a sweep, eq. (20) of the paper
 
@@ -146,47 +84,90 @@ static PetscErrorCode AbutBodySpread_Private(AbutBody body)
 
    Level: beginner
 
-   Note:
-   Whether the linear solver converged is asked of its `KSP`, see `AbutBodyGetKSP()`.
+   Notes:
+   Whether the linear solver converged is asked of its `KSP`, see `AbutBodyGetKSP()`. An iterative one begins with the present displacement.
 
-.seealso: `AbutBodyGetSolution()`, `AbutBodyGetVertexDisplacement()`, `AbutBodyGetCellStress()`
+   With free modes, what the forces have along them is left out (see `AbutBodyGetImbalance()`), and the displacement has no part along them.
+
+.seealso: `AbutBodyGetSolution()`, `AbutBodyGetCellStress()`, `AbutBodySolveIncrement()`, `AbutBodyGetFreeModes()`, `AbutBodyGetImbalance()`
 @*/
 PetscErrorCode AbutBodySolve(AbutBody body, Vec contact)
 {
-  PetscInt           its, first;
-  PetscReal          size;
-  const PetscInt    *row;
-  const PetscScalar *g;
-  PetscScalar       *b;
-  PetscInt           n;
-
   PetscFunctionBegin;
   PetscCall(AbutBodySetUp(body));
   PetscCall(PetscLogEventBegin(ABUTBODY_Solve, body, 0, 0, 0));
   if (contact) PetscCall(VecCopy(contact, body->contact));
   else PetscCall(VecZeroEntries(body->contact));
-  PetscCall(VecWAXPY(body->rhs, 1., body->load, body->contact));
-  PetscCall(VecAXPY(body->rhs, 1., body->lift));
-  PetscCall(VecGetOwnershipRange(body->rhs, &first, NULL));
-  PetscCall(ISGetLocalSize(body->constrained, &n));
-  PetscCall(ISGetIndices(body->constrained, &row));
-  PetscCall(VecGetArrayRead(body->prescribed, &g));
-  PetscCall(VecGetArray(body->rhs, &b));
-  for (PetscInt i = 0; i < n; ++i) b[row[i] - first] = body->mu * g[i];
-  PetscCall(VecRestoreArray(body->rhs, &b));
-  PetscCall(VecRestoreArrayRead(body->prescribed, &g));
-  PetscCall(ISRestoreIndices(body->constrained, &row));
-  PetscCall(KSPSolve(body->ksp, body->rhs, body->u));
-  PetscCall(VecNorm(body->u, NORM_INFINITY, &size));
-  if (PetscIsInfOrNanReal(size)) { /* a factor may be spoilt without saying so: the caller asks the KSP, and finds zeros instead of NaN */
-    body->ksp->reason = KSP_DIVERGED_NANORINF;
-    PetscCall(VecZeroEntries(body->u));
-  }
-  PetscCall(KSPGetIterationNumber(body->ksp, &its));
-  ++body->solves;
-  body->iterations += its;
+  PetscCall(AbutBodyRightHandSide_Private(body, body->rhs));
+  PetscCall(AbutBodySolveLinear_Private(body, body->u));
   PetscCall(AbutBodySpread_Private(body));
   PetscCall(PetscLogEventEnd(ABUTBODY_Solve, body, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutBodySolveIncrement - Answers more contact forces alone: zero prescribed displacements, no tractions; the body itself stays as it is
+
+   Collective
+
+   Input Parameters:
++  body    - the body, set up
+-  contact - nodal contact forces to come, stress times length, of the layout of `AbutBodyCreateVec()`
+
+   Output Parameter:
+.  w - the displacement they add, length, of the same layout; what it held before is of no account, an iterative solver begins with zero
+
+   Level: intermediate
+
+   Notes:
+   Counts as a solve, except for contact forces that are all zero, which cost nothing. Whether the linear solver converged is asked of its
+   `KSP`; after a failure w may be zero.
+
+   With free modes, what the forces have along them is left out, and w has no part along them.
+
+.seealso: `AbutBodyUpdate()`, `AbutBodySolve()`, `AbutBodyGetKSP()`
+@*/
+PetscErrorCode AbutBodySolveIncrement(AbutBody body, Vec contact, Vec w)
+{
+  PetscReal size;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, ABUTBODY_CLASSID, 1);
+  PetscCall(AbutBodyNeedSetUp_Private(body));
+  PetscCall(PetscLogEventBegin(ABUTBODY_Solve, body, 0, 0, 0));
+  PetscCall(VecCopy(contact, body->rhs));
+  PetscCall(VecISSet(body->rhs, body->constrained, 0.));
+  PetscCall(VecZeroEntries(w));
+  PetscCall(VecNorm(body->rhs, NORM_INFINITY, &size));
+  if (size == 0.) body->ksp->reason = KSP_CONVERGED_ATOL;
+  else PetscCall(AbutBodySolveLinear_Private(body, w));
+  PetscCall(PetscLogEventEnd(ABUTBODY_Solve, body, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutBodyUpdate - Adds to the displacement of a body, and to the contact forces on it
+
+   Collective
+
+   Input Parameters:
++  body    - the body, set up
+.  contact - nodal contact forces to add, stress times length, or `NULL` for none
+-  w       - displacement to add, length, as of `AbutBodySolveIncrement()`, or `NULL` for none
+
+   Level: intermediate
+
+.seealso: `AbutBodySolveIncrement()`, `AbutBodyMove()`
+@*/
+PetscErrorCode AbutBodyUpdate(AbutBody body, Vec contact, Vec w)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, ABUTBODY_CLASSID, 1);
+  PetscCall(AbutBodyNeedSetUp_Private(body));
+  if (contact) PetscCall(VecAXPY(body->contact, 1., contact));
+  if (!w) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecAXPY(body->u, 1., w));
+  PetscCall(AbutBodySpread_Private(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -258,20 +239,35 @@ PetscErrorCode AbutBodyGetSolveCounts(AbutBody body, PetscInt *solves, PetscInt 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* b - A u of the present state and the size of b, both without what the free modes leave without an answer */
+static PetscErrorCode AbutBodyCreateResidual_Private(AbutBody body, Vec *r, PetscReal *b)
+{
+  PetscFunctionBegin;
+  PetscCall(AbutBodyNeedSetUp_Private(body));
+  PetscCall(VecDuplicate(body->rhs, r));
+  PetscCall(AbutBodyRightHandSide_Private(body, body->rhs));
+  PetscCall(MatNullSpaceRemove(body->free, body->rhs));
+  PetscCall(VecNorm(body->rhs, NORM_2, b));
+  PetscCall(MatMult(body->A, body->u, *r));
+  PetscCall(VecAYPX(*r, -1., body->rhs));
+  PetscCall(MatNullSpaceRemove(body->free, *r));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
-   AbutBodyGetLinearResidual - The true residual of the last linear solve
+   AbutBodyGetLinearResidual - The true residual of a body as it now is, after solves, updates and moves
 
    Collective
 
    Input Parameter:
-.  body - the body
+.  body - the body, solved
 
    Output Parameter:
-.  residual - |b - A u|/|b|, 0 for a body without load
+.  residual - |b - A u|/|b| without the parts along the free modes; |b - A u| for a body without load
 
    Level: intermediate
 
-.seealso: `AbutBodySolve()`
+.seealso: `AbutBodySolve()`, `AbutBodyUpdate()`, `AbutBodyGetLinearError()`
 @*/
 PetscErrorCode AbutBodyGetLinearResidual(AbutBody body, PetscReal *residual)
 {
@@ -279,12 +275,47 @@ PetscErrorCode AbutBodyGetLinearResidual(AbutBody body, PetscReal *residual)
   PetscReal b, e;
 
   PetscFunctionBegin;
-  PetscCall(VecDuplicate(body->rhs, &r));
-  PetscCall(MatMult(body->A, body->u, r));
-  PetscCall(VecAYPX(r, -1., body->rhs));
+  PetscCall(AbutBodyCreateResidual_Private(body, &r, &b));
   PetscCall(VecNorm(r, NORM_2, &e));
-  PetscCall(VecNorm(body->rhs, NORM_2, &b));
   PetscCall(VecDestroy(&r));
   *residual = b > 0. ? e / b : e;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutBodyGetLinearError - How far the displacement of a body is from that of an exact linear solver, in the energy norm
+
+   Collective
+
+   Input Parameter:
+.  body - the body, solved
+
+   Output Parameter:
+.  energy - estimate of the square root of a(e,e), e the error of the linear solver; its square has the unit of `AbutBodyGetEnergy()`
+
+   Level: intermediate
+
+   Note:
+   The square root of r.Br, r the true residual of the present state, B one application of the preconditioner: exact for a direct factor.
+
+.seealso: `AbutBodyGetLinearResidual()`, `AbutBodyGetEnergy()`
+@*/
+PetscErrorCode AbutBodyGetLinearError(AbutBody body, PetscReal *energy)
+{
+  Vec         r, z;
+  PC          pc;
+  PetscReal   b;
+  PetscScalar dot;
+
+  PetscFunctionBegin;
+  PetscCall(AbutBodyCreateResidual_Private(body, &r, &b));
+  PetscCall(VecDuplicate(r, &z));
+  PetscCall(KSPSetUp(body->ksp));
+  PetscCall(KSPGetPC(body->ksp, &pc));
+  PetscCall(PCApply(pc, r, z));
+  PetscCall(VecDot(r, z, &dot));
+  PetscCall(VecDestroy(&r));
+  PetscCall(VecDestroy(&z));
+  *energy = PetscSqrtReal(PetscMax(dot, 0.)); /* round-off of a residual that is nothing else */
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -168,7 +168,6 @@ PetscErrorCode AbutBodyAssemble_Private(AbutBody body)
   PetscCall(AbutMeshGetTopology(body->mesh, &t));
   PetscCall(AbutBodyPattern_Private(body, t, &count));
   PetscCall(AbutBodyValues_Private(body, t, count));
-  PetscCall(MatSetOption(body->A, MAT_SPD, PETSC_TRUE));
   PetscCall(ISCreateStride(PetscObjectComm((PetscObject)body), 2 * t->nowned, 2 * t->firstowned, 1, &columns));
   PetscCall(MatCreateSubMatrix(body->A, body->constrained, columns, MAT_INITIAL_MATRIX, &body->Ac));
   PetscCall(ISDestroy(&columns));

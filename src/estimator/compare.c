@@ -240,13 +240,9 @@ PetscErrorCode AbutEstimatorGetNorms(AbutBody body, Vec eta, PetscReal *total, P
   PetscCall(AbutMeshGetTopology(mesh, &t));
   PetscCall(VecGetArrayRead(eta, &e));
   for (PetscInt c = 0; c < t->ncells; ++c) {
-    PetscReal area = 0.;
+    PetscReal area;
 
-    for (PetscInt k = 0; k < t->corners; ++k) { /* the shoelace formula */
-      const PetscReal *p = &t->x[2 * t->cell[t->corners * c + k]], *q = &t->x[2 * t->cell[t->corners * c + (k + 1) % t->corners]];
-
-      area += 0.5 * (p[0] * q[1] - p[1] * q[0]);
-    }
+    PetscCall(AbutMeshGetCellArea(mesh, c, &area));
     sum[0] += area;
     sum[1] += area * PetscSqr(e[c]);
   }

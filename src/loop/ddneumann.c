@@ -10,8 +10,7 @@ typedef enum {
 static const char *const AbutStops[] = {"residual", "paper", NULL};
 
 typedef struct {
-  PetscReal gamma; /* 0: that of the interface */
-  PetscReal eps;   /* the paper's eps_u */
+  PetscReal eps; /* the paper's eps_u */
   PetscInt  stop;
 } SNES_DDNeumann;
 
@@ -29,9 +28,6 @@ static PetscErrorCode SNESSetFromOptions_DDNeumann(SNES snes, AbutOptionItems Pe
 
   PetscFunctionBegin;
   PetscOptionsHeadBegin(PetscOptionsObject, "SNES ddneumann options");
-  PetscCall(AbutOptionsReal(PetscOptionsObject, "-snes_ddneumann_gamma", "Relaxation", &dd->gamma, &set));
-  AbutCheckInput(!set || dd->gamma >= 0., PetscObjectComm((PetscObject)snes),
-                 "snes_ddneumann_gamma: %g; give a positive number, or 0 for 2/(2+C/theta)", (double)dd->gamma);
   PetscCall(AbutOptionsReal(PetscOptionsObject, "-snes_ddneumann_eps", "Relative change of the paper's stop test", &dd->eps, &set));
   AbutCheckInput(!set || dd->eps > 0., PetscObjectComm((PetscObject)snes),
                  "snes_ddneumann_eps: %g; give a positive number, for example 0.0015", (double)dd->eps);
@@ -43,15 +39,18 @@ static PetscErrorCode SNESSetFromOptions_DDNeumann(SNES snes, AbutOptionItems Pe
 static PetscErrorCode SNESView_DDNeumann(SNES snes, PetscViewer viewer)
 {
   SNES_DDNeumann *dd = (SNES_DDNeumann *)snes->data;
+  AbutInterface   iface;
+  PetscReal       gamma;
   PetscBool       ascii;
 
   PetscFunctionBegin;
   PetscCall(PetscObjectTypeCompare((PetscObject)viewer, PETSCVIEWERASCII, &ascii));
   if (!ascii) PetscFunctionReturn(PETSC_SUCCESS);
-  if (dd->gamma > 0.)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  parallel Neumann scheme, gamma = %g, stop test %s\n", (double)dd->gamma,
-                                     AbutStops[dd->stop]));
-  else PetscCall(PetscViewerASCIIPrintf(viewer, "  parallel Neumann scheme, gamma = 2/(2+C/theta), stop test %s\n", AbutStops[dd->stop]));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  parallel Neumann scheme, stop test %s\n", AbutStops[dd->stop]));
+  PetscCall(SNESGetApplicationContext(snes, &iface));
+  if (!iface || (iface->spectrum && iface->largest == 0.)) PetscFunctionReturn(PETSC_SUCCESS); /* not known yet */
+  PetscCall(AbutInterfaceGetGamma(iface, &gamma));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  relaxation gamma = %g\n", (double)gamma));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -73,12 +72,12 @@ static PetscErrorCode SNESSolve_DDNeumann(SNES snes)
   Vec             x = snes->vec_sol, F = snes->vec_func, step = snes->work[0];
   const PetscBool inner = (PetscBool)(snes->normschedule != SNES_NORM_ALWAYS); /* a preconditioner of another SNES: no tests, no monitors */
   AbutInterface   iface;
-  PetscReal       gamma = dd->gamma, fnorm = 0., xnorm, ynorm = 0.;
+  PetscReal       gamma, fnorm = 0., xnorm, ynorm = 0.;
 
   PetscFunctionBegin;
   PetscCall(SNESGetApplicationContext(snes, &iface));
   PetscCheck(iface, PetscObjectComm((PetscObject)snes), PETSC_ERR_ARG_WRONGSTATE, "ddneumann needs AbutInterfaceSetSNES()");
-  if (gamma <= 0.) PetscCall(AbutInterfaceGetGamma(iface, &gamma));
+  PetscCall(AbutInterfaceGetGamma(iface, &gamma));
   snes->reason = SNES_CONVERGED_ITERATING;
   iface->rate  = gamma; /* what the slowest mode of a sound loop loses in a sweep */
   for (PetscInt it = 0;; ++it) {
@@ -128,19 +127,20 @@ static PetscErrorCode SNESDestroy_DDNeumann(SNES snes)
 }
 
 /*MC
-   SNESDDNEUMANN - The paper's parallel Neumann domain decomposition, eqs. (17)-(21): one solve per body with the pressures of the last iterate, then relaxation
+   SNESDDNEUMANN - The paper's parallel Neumann domain decomposition, eqs. (17)-(21): one solve of every body, then relaxation
 
    Options Database Keys:
-+  -snes_ddneumann_gamma <0>                   - relaxation; 0 means 2/(2+C/theta), C = sum of H(1-nu^2)/E
++  -snes_ddneumann_gamma <0>                   - relaxation; 0 means 2/(2+C/theta), see `AbutInterfaceGetGamma()`
+.  -snes_ddneumann_gamma_spectrum <no,yes>     - the automatic one from computed eigenvalues, `AbutInterfaceGetSpectrum()`
 .  -snes_ddneumann_start <winkler,nocontact,zero> - first trace, see `AbutInterfaceComputeStart()`
-.  -snes_ddneumann_stop <residual,paper>       - the fixed-point residual with -snes_rtol (default), or the paper's relative change per sweep
+.  -snes_ddneumann_stop <residual,paper>       - the fixed-point residual with -snes_rtol, or the paper's relative change per sweep
 -  -snes_ddneumann_eps <0.0015>                - the paper's eps_u
 
    Level: beginner
 
    Notes:
-   Converges for gamma < 2/(1+C/theta); beyond that it ends with the verdict oscillation. As -npc_snes_type ddneumann with -npc_snes_max_it 1 it preconditions
-   PETSc's anderson, ngmres and qn.
+   Converges for gamma < 2/(1+C/theta); beyond that it ends with the verdict oscillation. As -npc_snes_type ddneumann with -npc_snes_max_it
+   1 it preconditions PETSc's anderson, ngmres and qn; the relaxation is one for all, that of the map.
 
    The paper's test measures gamma times the error of the slow modes: with gamma 0.02 and 0.0015 an error of 7.5 % passes.
 

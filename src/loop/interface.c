@@ -45,7 +45,16 @@ PetscErrorCode AbutInterfaceCreate(MPI_Comm comm, PetscInt nbodies, AbutBody bod
     PetscCall(PetscObjectReference((PetscObject)pairs[i]));
     f->pair[i] = pairs[i];
   }
-  PetscCall(PetscCalloc1(2 * npairs, &f->old));
+  PetscCall(PetscCalloc2(2 * npairs, &f->old, npairs, &f->oldpressure));
+  PetscCall(PetscMalloc1(2 * npairs, &f->bodyof));
+  for (PetscInt t = 0; t < 2 * npairs; ++t) {
+    AbutBody ends[2];
+    PetscInt sides[2];
+
+    PetscCall(AbutPairGetBodies(pairs[t / 2], ends, sides));
+    for (PetscInt b = 0; b < nbodies; ++b)
+      if (bodies[b] == ends[t % 2]) f->bodyof[t] = b;
+  }
   *iface = f;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -118,16 +127,26 @@ PetscErrorCode AbutInterfaceSetUp(AbutInterface iface)
   }
   all = iface->offset[2 * iface->npairs];
   PetscCall(AbutInterfaceLayout_Private(iface));
-  PetscCall(PetscCalloc4(all, &iface->x, all, &iface->g, all, &iface->xbest, iface->npairs, &iface->p));
-  for (PetscInt i = 0; i < iface->npairs; ++i) PetscCall(PetscCalloc1(iface->offset[2 * i + 2] - iface->offset[2 * i], &iface->p[i]));
-  PetscCall(PetscMalloc1(iface->nbodies, &iface->force));
-  for (PetscInt b = 0; b < iface->nbodies; ++b) PetscCall(AbutBodyCreateVec(iface->body[b], &iface->force[b]));
+  PetscCall(PetscCalloc5(all, &iface->x, all, &iface->g, all, &iface->xbest, iface->npairs, &iface->p, iface->npairs, &iface->guess));
+  for (PetscInt i = 0; i < iface->npairs; ++i) {
+    PetscCall(PetscCalloc1(iface->offset[2 * i + 2] - iface->offset[2 * i], &iface->p[i]));
+    PetscCall(PetscCalloc1(iface->offset[2 * i + 2] - iface->offset[2 * i], &iface->guess[i]));
+  }
+  PetscCall(PetscMalloc2(iface->nbodies, &iface->force, iface->nbodies, &iface->u));
+  for (PetscInt b = 0; b < iface->nbodies; ++b) {
+    PetscCall(AbutBodyCreateVec(iface->body[b], &iface->force[b]));
+    PetscCall(AbutBodyGetSolution(iface->body[b], &iface->u[b]));
+  }
   PetscCall(AbutInterfaceCreateVec(iface, &iface->G));
   PetscCall(VecScatterCreateToAll(iface->G, &iface->toall, &iface->everywhere));
   iface->id           = 0;
   iface->residualbest = PETSC_MAX_REAL;
   iface->linearfailed = PETSC_FALSE;
   iface->failure      = NULL;
+  iface->floating[0]  = 0;
+  iface->acts         = PETSC_FALSE;
+  iface->guessed      = PETSC_FALSE;
+  iface->largest      = 0.;
   iface->setupcalled  = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -148,12 +167,16 @@ PetscErrorCode AbutInterfaceReset(AbutInterface iface)
 {
   PetscFunctionBegin;
   if (!iface->setupcalled) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt i = 0; i < iface->npairs; ++i) PetscCall(PetscFree(iface->p[i]));
+  for (PetscInt i = 0; i < iface->npairs; ++i) {
+    PetscCall(PetscFree(iface->p[i]));
+    PetscCall(PetscFree(iface->guess[i]));
+  }
   for (PetscInt b = 0; b < iface->nbodies; ++b) PetscCall(VecDestroy(&iface->force[b]));
-  PetscCall(PetscFree(iface->force));
+  PetscCall(PetscFree2(iface->force, iface->u));
+  PetscCall(AbutContactModelDestroy_Private(&iface->model));
   PetscCall(PetscFree(iface->offset));
   PetscCall(PetscFree2(iface->owned, iface->place));
-  PetscCall(PetscFree4(iface->x, iface->g, iface->xbest, iface->p));
+  PetscCall(PetscFree5(iface->x, iface->g, iface->xbest, iface->p, iface->guess));
   PetscCall(VecScatterDestroy(&iface->toall));
   PetscCall(VecDestroy(&iface->everywhere));
   PetscCall(VecDestroy(&iface->G));
@@ -186,7 +209,9 @@ PetscErrorCode AbutInterfaceDestroy(AbutInterface *iface)
   for (PetscInt b = 0; b < (*iface)->nbodies; ++b) PetscCall(AbutBodyDestroy(&(*iface)->body[b]));
   for (PetscInt i = 0; i < (*iface)->npairs; ++i) PetscCall(AbutPairDestroy(&(*iface)->pair[i]));
   for (PetscInt t = 0; t < 2 * (*iface)->npairs; ++t) PetscCall(PetscFree2((*iface)->old[t].x, (*iface)->old[t].value));
-  PetscCall(PetscFree((*iface)->old));
+  for (PetscInt i = 0; i < (*iface)->npairs; ++i) PetscCall(PetscFree2((*iface)->oldpressure[i].x, (*iface)->oldpressure[i].value));
+  PetscCall(PetscFree2((*iface)->old, (*iface)->oldpressure));
+  PetscCall(PetscFree((*iface)->bodyof));
   PetscCall(PetscFree2((*iface)->body, (*iface)->pair));
   PetscCall(PetscHeaderDestroy(iface));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -262,59 +287,6 @@ PetscErrorCode AbutInterfaceGetSweeps(AbutInterface iface, PetscInt *sweeps, Pet
   PetscFunctionBegin;
   *sweeps = iface->sweeps;
   if (start) *start = iface->startsweeps;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-   AbutInterfaceSetGamma - Sets the relaxation of a sweep
-
-   Logically Collective
-
-   Input Parameters:
-+  iface - the map
--  gamma - > 0; or 0 for the automatic one
-
-   Level: intermediate
-
-.seealso: `AbutInterfaceGetGamma()`, `SNESDDNEUMANN`
-@*/
-PetscErrorCode AbutInterfaceSetGamma(AbutInterface iface, PetscReal gamma)
-{
-  PetscFunctionBegin;
-  iface->gamma = gamma;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-   AbutInterfaceGetGamma - The relaxation of a sweep: the user's, or 2/(2 + C/theta), C = sum of H(1-nu^2)/E, the least over the pairs
-
-   Not Collective
-
-   Input Parameter:
-.  iface - the map
-
-   Output Parameter:
-.  gamma - the relaxation
-
-   Level: intermediate
-
-   Note:
-   For two layers on supports the eigenvalues of I - dG lie between 1 and 1 + C/theta, and the automatic gamma balances their ends. A body that is held from
-   aside, or that is in several pairs, gives more than its layer: there the gamma may have to be smaller, and the verdict oscillation or nan says so.
-
-.seealso: `AbutInterfaceSetGamma()`, `AbutPairGetCompliance()`, `SNESDDNEUMANN`
-@*/
-PetscErrorCode AbutInterfaceGetGamma(AbutInterface iface, PetscReal *gamma)
-{
-  PetscFunctionBegin;
-  *gamma = iface->gamma > 0. ? iface->gamma : 1.;
-  for (PetscInt i = 0; i < iface->npairs && iface->gamma <= 0.; ++i) {
-    PetscReal c[2], theta;
-
-    PetscCall(AbutPairGetCompliance(iface->pair[i], c));
-    PetscCall(AbutPairGetTheta(iface->pair[i], &theta));
-    *gamma = PetscMin(*gamma, 2. / (2. + (c[0] + c[1]) / theta));
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -2,46 +2,81 @@
 
 /* One sweep, eq. (20) of the paper: traces -> pressures -> forces -> one solve per body -> traces */
 
-/* Pressures p act, every body is solved with them, its traces go to g */
-static PetscErrorCode AbutInterfaceSolveBodies_Private(AbutInterface f)
+/* Nodal pressures of all pairs -> nodal forces on all bodies */
+PetscErrorCode AbutInterfaceForces_Private(AbutInterface f, PetscReal *const p[], Vec force[])
 {
   PetscFunctionBegin;
-  for (PetscInt b = 0; b < f->nbodies; ++b) PetscCall(VecZeroEntries(f->force[b]));
+  for (PetscInt b = 0; b < f->nbodies; ++b) PetscCall(VecZeroEntries(force[b]));
   for (PetscInt i = 0; i < f->npairs; ++i) {
     const PetscInt *o = f->offset + 2 * i;
     AbutBody        bodies[2];
     PetscInt        sides[2];
-    PetscReal      *force;
+    PetscReal      *nodal;
 
     PetscCall(AbutPairGetBodies(f->pair[i], bodies, sides));
-    PetscCall(PetscMalloc1(o[2] - o[0], &force));
-    PetscCall(AbutPairComputeForce(f->pair[i], f->p[i], force, force + o[1] - o[0]));
-    for (PetscInt k = 0; k < o[2] - o[0]; ++k) force[k] = -force[k]; /* a pressure pushes against the outward normal */
+    PetscCall(PetscMalloc1(o[2] - o[0], &nodal));
+    PetscCall(AbutPairComputeForce(f->pair[i], p[i], nodal, nodal + o[1] - o[0]));
+    for (PetscInt k = 0; k < o[2] - o[0]; ++k) nodal[k] = -nodal[k]; /* a pressure pushes against the outward normal */
     for (PetscInt s = 0; s < 2; ++s)
-      for (PetscInt b = 0; b < f->nbodies; ++b)
-        if (f->body[b] == bodies[s]) PetscCall(AbutBodyAddSideForce(bodies[s], sides[s], force + o[s] - o[0], f->force[b]));
-    PetscCall(PetscFree(force));
+      PetscCall(AbutBodyAddSideForce(bodies[s], sides[s], nodal + o[s] - o[0], force[f->bodyof[2 * i + s]]));
+    PetscCall(PetscFree(nodal));
   }
-  for (PetscInt b = 0; b < f->nbodies; ++b) {
-    KSP                ksp;
-    KSPConvergedReason reason;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
-    PetscCall(AbutBodySolve(f->body[b], f->force[b]));
-    PetscCall(AbutBodyGetKSP(f->body[b], &ksp));
-    PetscCall(KSPGetConvergedReason(ksp, &reason));
-    if (reason < 0) f->linearfailed = PETSC_TRUE;
-  }
-  for (PetscInt i = 0; i < f->npairs; ++i) {
+/* Displacements of all bodies -> normal traces on both sides of all pairs */
+PetscErrorCode AbutInterfaceTraces_Private(AbutInterface f, const Vec u[], PetscReal trace[])
+{
+  PetscFunctionBegin;
+  for (PetscInt t = 0; t < 2 * f->npairs; ++t) {
     AbutBody bodies[2];
     PetscInt sides[2];
-    Vec      u;
 
-    PetscCall(AbutPairGetBodies(f->pair[i], bodies, sides));
-    for (PetscInt s = 0; s < 2; ++s) {
-      PetscCall(AbutBodyGetSolution(bodies[s], &u));
-      PetscCall(AbutBodyGetSideTrace(bodies[s], sides[s], u, f->g + f->offset[2 * i + s]));
-    }
+    PetscCall(AbutPairGetBodies(f->pair[t / 2], bodies, sides));
+    PetscCall(AbutBodyGetSideTrace(bodies[t % 2], sides[t % 2], u[f->bodyof[t]], trace + f->offset[t]));
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Has the body's last linear solve failed? */
+PetscErrorCode AbutInterfaceCheckSolve_Private(AbutInterface f, AbutBody body)
+{
+  KSP                ksp;
+  KSPConvergedReason reason;
+
+  PetscFunctionBegin;
+  PetscCall(AbutBodyGetKSP(body, &ksp));
+  PetscCall(KSPGetConvergedReason(ksp, &reason));
+  if (reason < 0) f->linearfailed = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Pressures p act, every body is solved with them, its traces go to g */
+PetscErrorCode AbutInterfaceSolveBodies_Private(AbutInterface f)
+{
+  PetscFunctionBegin;
+  PetscCall(AbutInterfaceForces_Private(f, f->p, f->force));
+  for (PetscInt b = 0; b < f->nbodies; ++b) {
+    PetscCall(AbutBodySolve(f->body[b], f->force[b]));
+    PetscCall(AbutInterfaceCheckSolve_Private(f, f->body[b]));
+  }
+  PetscCall(AbutInterfaceTraces_Private(f, f->u, f->g));
+  f->acts = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One sweep with more pressures alone, zero prescribed displacements and no loads: what it adds to the traces; the bodies stay as they are */
+PetscErrorCode AbutInterfaceIncrement_Private(AbutInterface f, PetscReal *const p[], Vec force[], Vec w[], PetscReal trace[])
+{
+  PetscFunctionBegin;
+  PetscCall(PetscLogEventBegin(ABUTINTERFACE_Sweep, f, 0, 0, 0));
+  PetscCall(AbutInterfaceForces_Private(f, p, force));
+  for (PetscInt b = 0; b < f->nbodies; ++b) {
+    PetscCall(AbutBodySolveIncrement(f->body[b], force[b], w[b]));
+    PetscCall(AbutInterfaceCheckSolve_Private(f, f->body[b]));
+  }
+  PetscCall(AbutInterfaceTraces_Private(f, w, trace));
+  PetscCall(PetscLogEventEnd(ABUTINTERFACE_Sweep, f, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -186,7 +221,8 @@ PetscErrorCode AbutInterfaceComputeStart(AbutInterface iface, AbutStart start, V
 {
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(iface->x, iface->offset[2 * iface->npairs]));
-  iface->id = 0;
+  iface->id   = 0;
+  iface->warm = PETSC_FALSE;
   for (PetscInt i = 0; start == ABUT_START_WINKLER && i < iface->npairs; ++i) {
     PetscBool found;
 

@@ -1,9 +1,25 @@
 #include <abut/private/loopimpl.h> /*I "abutloop.h" I*/
 
-/* The trace across a change of mesh: kept with the coordinates of its nodes, and evaluated at the new ones */
+/* Traces and pressures across a change of mesh: kept with the coordinates of their nodes, and evaluated at the new ones */
+
+static PetscErrorCode AbutOldTraceKeep_Private(AbutOldTrace *old, PetscInt n, const PetscReal x[], const PetscReal value[], PetscBool backwards)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree2(old->x, old->value));
+  old->n = n;
+  PetscCall(PetscMalloc2(2 * n, &old->x, n, &old->value));
+  for (PetscInt i = 0; i < n; ++i) {
+    const PetscInt from = backwards ? n - 1 - i : i;
+
+    old->x[2 * i]     = x[2 * from];
+    old->x[2 * i + 1] = x[2 * from + 1];
+    old->value[i]     = value[from];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 /*@
-   AbutInterfaceKeepTrace - Keeps a trace before the meshes adapt
+   AbutInterfaceKeepTrace - Keeps a trace, and the pressures of the last sweep, before the meshes adapt
 
    Collective
 
@@ -23,19 +39,26 @@ PetscErrorCode AbutInterfaceKeepTrace(AbutInterface iface, Vec x)
   PetscCall(PetscMalloc1(iface->offset[2 * iface->npairs], &full));
   PetscCall(AbutInterfaceReplicate_Private(iface, x, full));
   for (PetscInt t = 0; t < 2 * iface->npairs; ++t) {
-    AbutOldTrace   *old = &iface->old[t];
     AbutBody        bodies[2];
     PetscInt        sides[2];
     const AbutSide *side;
 
     PetscCall(AbutPairGetBodies(iface->pair[t / 2], bodies, sides));
     PetscCall(AbutBodyGetSide(bodies[t % 2], sides[t % 2], &side));
-    PetscCall(PetscFree2(old->x, old->value));
-    old->n = side->n;
-    PetscCall(PetscMalloc2(2 * old->n, &old->x, old->n, &old->value));
-    PetscCall(PetscArraycpy(old->x, side->x, 2 * old->n));
-    PetscCall(PetscArraycpy(old->value, full + iface->offset[t], old->n));
+    PetscCall(AbutOldTraceKeep_Private(&iface->old[t], side->n, side->x, full + iface->offset[t], PETSC_FALSE));
   }
+  for (PetscInt i = 0; i < iface->npairs; ++i) { /* the pressures may change sides: always along the first one */
+    PetscInt         which, n;
+    const PetscReal *xn, *D;
+    PetscReal       *unknown;
+
+    PetscCall(AbutPairGetPressureNodes(iface->pair[i], &which, &n, &xn, &D));
+    PetscCall(PetscMalloc1(n, &unknown));
+    for (PetscInt k = 0; k < n; ++k) unknown[k] = iface->p[i][k] - iface->guess[i][k];
+    PetscCall(AbutOldTraceKeep_Private(&iface->oldpressure[i], n, xn, unknown, (PetscBool)which));
+    PetscCall(PetscFree(unknown));
+  }
+  iface->warm = iface->guessed;
   PetscCall(PetscFree(full));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -84,5 +107,24 @@ PetscErrorCode AbutInterfaceTransferTrace(AbutInterface iface, Vec x)
       iface->x[iface->offset[t] + i] = AbutOldTraceValue_Private(&iface->old[t], side->x + 2 * i, &element);
   }
   PetscCall(AbutInterfaceLocalize_Private(iface, iface->x, x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The guess of the present meshes, and what was wrong with that of the old ones: the first pressures of a loop that goes on */
+PetscErrorCode AbutInterfaceTransferPressure_Private(AbutInterface iface)
+{
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < iface->npairs; ++i) {
+    PetscInt         which, n, element = 0;
+    const PetscReal *x, *D;
+
+    PetscCall(AbutPairGetPressureNodes(iface->pair[i], &which, &n, &x, &D));
+    for (PetscInt k = 0; k < n; ++k) {
+      const PetscInt  node = which ? n - 1 - k : k;
+      const PetscReal p    = AbutOldTraceValue_Private(&iface->oldpressure[i], x + 2 * node, &element);
+
+      iface->p[i][node] = D[node] > 0. ? PetscMax(0., iface->guess[i][node] + p) : 0.;
+    }
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

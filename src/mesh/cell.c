@@ -67,6 +67,36 @@ PetscErrorCode AbutMeshMapCell(AbutMesh mesh, PetscInt c, const PetscReal xi[2],
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+   AbutMeshGetCellArea - The area of a local cell
+
+   Not Collective
+
+   Input Parameters:
++  mesh - the mesh
+-  c    - local cell
+
+   Output Parameter:
+.  area - its area
+
+   Level: developer
+
+.seealso: `AbutMeshMapCell()`, `AbutMeshGetTopology()`
+@*/
+PetscErrorCode AbutMeshGetCellArea(AbutMesh mesh, PetscInt c, PetscReal *area)
+{
+  const AbutMeshTopology *t = &mesh->topology;
+
+  PetscFunctionBegin;
+  *area = 0.;
+  for (PetscInt k = 0; k < t->corners; ++k) { /* the shoelace formula */
+    const PetscReal *p = &t->x[2 * t->cell[t->corners * c + k]], *q = &t->x[2 * t->cell[t->corners * c + (k + 1) % t->corners]];
+
+    *area += 0.5 * (p[0] * q[1] - p[1] * q[0]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@C
    AbutMeshInvertCell - Finds the reference point of a point in a local cell
 

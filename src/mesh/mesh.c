@@ -29,6 +29,7 @@ static PetscErrorCode AbutMeshInitializePackage_Private(void)
    Options Database Keys:
 +  -mesh_box <x0,y0,x1,y1>     - lower left and upper right corner, in the length unit of the scene
 .  -mesh_cells <nx,ny>         - cells of the first mesh along each direction (triangles: twice as many)
+.  -mesh_size <expression>     - largest side a cell may have, an expression in x and y: cells of the first mesh are split until they obey
 .  -mesh_shape <quad|triangle> - shape of the cells
 -  -mesh_order <1>             - polynomial order of the displacement
 
@@ -105,7 +106,8 @@ PetscErrorCode AbutMeshSetFromOptions(AbutMesh mesh)
   const char *prefix   = ((PetscObject)mesh)->prefix ? ((PetscObject)mesh)->prefix : "";
   PetscReal   box[4]   = {mesh->lower[0], mesh->lower[1], mesh->upper[0], mesh->upper[1]};
   PetscInt    cells[2] = {mesh->cells[0], mesh->cells[1]}, shape = mesh->shape, order = 1;
-  PetscBool   hasbox, hascells, hasshape;
+  PetscBool   hasbox, hascells, hasshape, hassize;
+  char        size[PETSC_MAX_PATH_LEN] = "", key[256];
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(mesh, ABUTMESH_CLASSID, 1);
@@ -114,7 +116,11 @@ PetscErrorCode AbutMeshSetFromOptions(AbutMesh mesh)
   PetscCall(AbutOptionsInts(PetscOptionsObject, "-mesh_cells", "nx,ny", 2, cells, &hascells));
   PetscCall(AbutOptionsEnum(PetscOptionsObject, "-mesh_shape", "Shape of the cells", AbutShapeNames, &shape, &hasshape));
   PetscCall(AbutOptionsInt(PetscOptionsObject, "-mesh_order", "Order of the displacement", &order, NULL));
+  PetscCall(AbutOptionsString(PetscOptionsObject, "-mesh_size", "Largest side of the cells", size, sizeof(size), &hassize));
   PetscOptionsEnd();
+  PetscCall(PetscSNPrintf(key, sizeof(key), "%smesh_size", prefix));
+  PetscCall(AbutExpressionDestroy(&mesh->size));
+  if (hassize) PetscCall(AbutExpressionCreate(PetscObjectComm((PetscObject)mesh), key, size, &mesh->size));
   AbutCheckInput(order == 1, PetscObjectComm((PetscObject)mesh), "%smesh_order: %" PetscInt_FMT " is not there; give 1", prefix, order);
   AbutCheckInput(mesh->boxset || (hasbox && hascells), PetscObjectComm((PetscObject)mesh), "%smesh_%s: missing; give %s", prefix,
                  hasbox ? "cells" : "box",
@@ -160,6 +166,7 @@ PetscErrorCode AbutMeshSetUp(AbutMesh mesh)
   PetscCall((mesh->shape == ABUT_QUAD ? AbutMeshCreate_Forest : AbutMeshCreate_Triangles)(mesh));
   PetscUseTypeMethod(mesh, create, &dm);
   PetscCall(AbutMeshSetDM_Private(mesh, dm));
+  PetscCall(AbutMeshRefineToSize_Private(mesh));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -362,6 +369,7 @@ PetscErrorCode AbutMeshDestroy(AbutMesh *mesh)
   PetscCall(AbutMeshTopologyReset_Private(*mesh));
   PetscCall(DMDestroy(&(*mesh)->dm));
   PetscTryTypeMethod(*mesh, destroy);
+  PetscCall(AbutExpressionDestroy(&(*mesh)->size));
   PetscCall(PetscHeaderDestroy(mesh));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -87,10 +87,8 @@ PetscErrorCode AbutPairCheck(AbutPair pair)
 @*/
 PetscErrorCode AbutPairComputePressure(AbutPair pair, const PetscReal u1[], const PetscReal u2[], PetscReal p[])
 {
-  const PetscReal *const u[2] = {u1, u2};
-
   PetscFunctionBegin;
-  PetscCall(AbutPairPenetration_Private(pair, u, p));
+  PetscCall(AbutPairComputePenetration(pair, u1, u2, p));
   for (PetscInt i = 0; i < pair->n[pair->which]; ++i) p[i] = PetscMax(0., p[i]) / pair->theta;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -127,6 +125,34 @@ PetscErrorCode AbutPairComputeForce(AbutPair pair, const PetscReal p[], PetscRea
       for (PetscInt side = 0; side < 2; ++side)
         for (PetscInt j = 0; j < 2; ++j) force[side][seg->element[side] + j] += seg->M[side][i][j] * p[seg->element[0] + i];
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutPairComputeSupport - Traces of two bodies that follow their supports without deforming
+
+   Not Collective
+
+   Input Parameter:
+.  pair - the pair, set up
+
+   Output Parameters:
++  u1 - [n1] normal displacements at the nodes of the first side: what is prescribed on the side opposite to it, 0 if nothing is; length
+-  u2 - [n2] the same on the second side
+
+   Level: developer
+
+.seealso: `AbutPairComputeWinkler()`, `SNESDDACTIVE`
+@*/
+PetscErrorCode AbutPairComputeSupport(AbutPair pair, PetscReal u1[], PetscReal u2[])
+{
+  PetscReal *const u[2] = {u1, u2};
+  PetscBool        found;
+
+  PetscFunctionBegin;
+  for (PetscInt s = 0; s < 2; ++s)
+    for (PetscInt i = 0; i < pair->n[s]; ++i)
+      PetscCall(AbutBodyGetSupportDisplacement(pair->body[s], pair->nodes[s]->x + 2 * i, pair->nodes[s]->normal, &u[s][i], &found));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

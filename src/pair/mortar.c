@@ -22,13 +22,19 @@ static PetscErrorCode AbutPairProject_Private(AbutPair pair, PetscReal *s[2], Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The side with more nodes on the common part carries the pressures, the first one if equal */
-static void AbutPairChoosePressureSide_Private(AbutPair pair)
+#define ABUT_STIFFER 1.5
+
+/* The side with more nodes on the common part carries the pressures, the first one if equal; but never that of the clearly stiffer body. Pressures that only
+   a stiff body resolves are held by its small compliance alone, and oscillate. */
+static PetscErrorCode AbutPairChoosePressureSide_Private(AbutPair pair)
 {
-  PetscInt count[2] = {0, 0};
+  PetscInt  count[2] = {0, 0};
+  PetscReal young[2], poisson[2], modulus[2];
+
+  PetscFunctionBegin;
 
   pair->which = pair->pressureside == ABUT_PRESSURE_SECOND;
-  if (pair->pressureside != ABUT_PRESSURE_FINER) return;
+  if (pair->pressureside != ABUT_PRESSURE_FINER) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; k < 2; ++k) {
     const AbutSide *own = pair->nodes[k], *other = pair->nodes[!k];
     PetscReal       box[4] = {PETSC_MAX_REAL, PETSC_MAX_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL};
@@ -42,6 +48,12 @@ static void AbutPairChoosePressureSide_Private(AbutPair pair)
       if (own->x[2 * i + d] >= box[d] && own->x[2 * i + d] <= box[2 + d]) ++count[k];
   }
   pair->which = count[1] > count[0];
+  for (PetscInt s = 0; s < 2; ++s) {
+    PetscCall(AbutBodyGetMaterial(pair->body[s], &young[s], &poisson[s]));
+    modulus[s] = young[s] / (1. - poisson[s] * poisson[s]);
+  }
+  if (modulus[pair->which] > ABUT_STIFFER * modulus[!pair->which]) pair->which = !pair->which;
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The dual functions psi_i = sum_j A[i][j] phi_j of one element on its overlap with the other side, biorthogonal there: A = diag(D) M^-1;
@@ -109,7 +121,7 @@ PetscErrorCode AbutPairMortar_Private(AbutPair pair)
   PetscInt        k;
 
   PetscFunctionBegin;
-  AbutPairChoosePressureSide_Private(pair);
+  PetscCall(AbutPairChoosePressureSide_Private(pair));
   m = pair->nodes[pair->which];
   o = pair->nodes[!pair->which];
   PetscCall(AbutPairProject_Private(pair, s, tangent));
@@ -151,21 +163,37 @@ PetscErrorCode AbutPairMortarReset_Private(AbutPair pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Averaged nodal penetrations (u_n1 + u_n2 - f) tested with the dual functions over D_i; u[0], u[1] the traces of the two sides of the pair */
-PetscErrorCode AbutPairPenetration_Private(AbutPair pair, const PetscReal *const u[2], PetscReal penetration[])
+/*@C
+   AbutPairComputePenetration - Averaged nodal penetrations: u_n1 + u_n2 - f tested with the dual functions, over their integrals
+
+   Not Collective
+
+   Input Parameters:
++  pair - the pair, set up
+.  u1   - [n1] normal displacements at the nodes of the first side, length
+-  u2   - [n2] the same on the second side
+
+   Output Parameter:
+.  g - [nodes of the pressure side] penetrations, length; 0 at nodes that carry no pressure
+
+   Level: intermediate
+
+.seealso: `AbutPairComputePressure()`, `AbutPairGetPressureNodes()`
+@*/
+PetscErrorCode AbutPairComputePenetration(AbutPair pair, const PetscReal u1[], const PetscReal u2[], PetscReal g[])
 {
-  const PetscReal *trace[2] = {u[pair->which], u[!pair->which]};
+  const PetscReal *trace[2] = {pair->which ? u2 : u1, pair->which ? u1 : u2};
   const PetscInt   n        = pair->n[pair->which];
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < n; ++i) penetration[i] = -pair->F[i];
-  for (PetscInt g = 0; g < pair->nsegments; ++g) {
-    const AbutSegment *seg = &pair->segment[g];
+  for (PetscInt i = 0; i < n; ++i) g[i] = -pair->F[i];
+  for (PetscInt k = 0; k < pair->nsegments; ++k) {
+    const AbutSegment *seg = &pair->segment[k];
 
     for (PetscInt i = 0; i < 2; ++i)
       for (PetscInt side = 0; side < 2; ++side)
-        for (PetscInt j = 0; j < 2; ++j) penetration[seg->element[0] + i] += seg->M[side][i][j] * trace[side][seg->element[side] + j];
+        for (PetscInt j = 0; j < 2; ++j) g[seg->element[0] + i] += seg->M[side][i][j] * trace[side][seg->element[side] + j];
   }
-  for (PetscInt i = 0; i < n; ++i) penetration[i] = pair->D[i] > 0. ? penetration[i] / pair->D[i] : 0.;
+  for (PetscInt i = 0; i < n; ++i) g[i] = pair->D[i] > 0. ? g[i] / pair->D[i] : 0.;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

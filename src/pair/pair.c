@@ -20,15 +20,15 @@ static const char *const AbutPressureSideNames[] = {"first", "second", "finer", 
 +  -NAME_pair_bodies <first,second> - names of the two bodies; E and H of the first give theta
 .  -NAME_pair_sides <first,second>  - their sides
 .  -NAME_pair_gap <f>               - gap as number, formula in x and y, or CSV file, length; default: the distance of the sides
-.  -NAME_pair_penalty <c>           - theta = c H/E, default 0.05
+.  -NAME_pair_penalty <c>           - theta = c H/E, default 0.05; 0 for exact contact
 .  -NAME_pair_theta <theta>         - theta itself, length/stress
 .  -NAME_pair_height <H>            - H, where it is not the extent of the first body along the normal, length
--  -NAME_pair_pressure_side <first|second|finer> - which side carries the nodal pressures
+-  -NAME_pair_pressure_side <first|second|finer> - which side carries the nodal pressures; finer is the other one where its body is clearly stiffer
 
    Level: intermediate
 
    Note:
-   Limits: straight sides, frictionless, small displacements (the pairing of the sides is fixed), penalty form (theta > 0).
+   Limits: straight sides, frictionless, small displacements (the pairing of the sides is fixed). Exact contact, theta = 0, needs `SNESDDACTIVE`.
 
 .seealso: `AbutPairSetFromOptions()`, `AbutPairSetUp()`, `AbutPairDestroy()`
 @*/
@@ -141,7 +141,7 @@ static PetscErrorCode AbutPairSetTheta_Private(AbutPair pair)
   if (pair->height <= 0.) PetscCall(AbutBodyGetHeight(pair->body[0], normal, &pair->height));
   PetscCall(AbutBodyGetMaterial(pair->body[0], &young, &poisson));
   if (!pair->thetaset) pair->theta = pair->penalty * pair->height / young;
-  AbutCheckInput(pair->theta > 0., comm, "%s_pair_%s: %g; the penalty form needs a positive one, for example %s", name,
+  AbutCheckInput(pair->theta >= 0., comm, "%s_pair_%s: %g; give 0 for exact contact, or a penalty, for example %s", name,
                  pair->thetaset ? "theta" : "penalty", (double)(pair->thetaset ? pair->theta : pair->penalty),
                  pair->thetaset ? "2.4e-7" : "0.05");
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -303,6 +303,31 @@ PetscErrorCode AbutPairDestroy(AbutPair *pair)
   PetscCall(AbutPairMortarReset_Private(*pair));
   PetscCall(AbutExpressionDestroy(&(*pair)->gap));
   PetscCall(PetscHeaderDestroy(pair));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutPairSetTheta - Sets the penalty, whatever the keys of the pair say
+
+   Logically Collective
+
+   Input Parameters:
++  pair  - the pair
+-  theta - theta of p = max(0, u_n1 + u_n2 - f)/theta, length over stress; 0 for exact contact
+
+   Level: intermediate
+
+   Note:
+   For a loop that has begun, only after `AbutInterfaceReset()`.
+
+.seealso: `AbutPairGetTheta()`, `AbutPairSetFromOptions()`
+@*/
+PetscErrorCode AbutPairSetTheta(AbutPair pair, PetscReal theta)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(pair, ABUTPAIR_CLASSID, 1);
+  pair->theta    = theta;
+  pair->thetaset = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -114,11 +114,21 @@ static PetscErrorCode AbutSceneFreeNames_Private(PetscInt n, char *names[])
 .  -scene_pairs <names>    - possible contacts, see `AbutPairCreate()`
 .  -scene_probes <names>   - points of the record: `-NAME_probe_body`, `-NAME_probe_point x,y`
 .  -scene_interleave       - one sweep and one adaptation a cycle, Fig. 2 of the paper; needs ddneumann
+.  -scene_loop_share <0.3>  - with an adaptor and ddactive: part of the estimated error that the loop may leave on a mesh to be refined; 0: none
+.  -scene_cold              - with an adaptor: every mesh begins without the traces and forces of the last one
 .  -scene_eps_u <0.0015>   - with it: the relative change of the traces at which the run ends
+.  -scene_tol T            - relative error in the energy norm to be reached: chooses theta, tolerances and refinement, see below
 .  -adaptor_type, -estimator_type, -snes_* - what adapts, estimates, iterates; see `AbutAdaptorCreate()`, `AbutEstimatorCreate()`, `SNESDDNEUMANN`
 -  -plugin <libraries>     - libraries with estimators of your own
 
    Level: beginner
+
+   Note:
+   `-scene_tol` makes an estimator and an adaptor if the scene has none, estimates and adapts all bodies, and ends when the estimate of all
+   together is at most three quarters of T: equal errors in all cells (`ABUTADAPTOREQUAL`), whatever `-adaptor_type`, `-adaptor_threshold`
+   and `-adaptor_bodies` say; the caps hold. ddactive then works with exact contact; other loops get a penalty whose part is about T/8, and
+   the automatic relaxation. Tolerances of the loop and of iterative linear solvers follow from T, except where `-snes_rtol` or
+   `-NAME_ksp_rtol` are given. A line says what was chosen.
 
 .seealso: `AbutSceneSetUp()`, `AbutSceneSolve()`
 @*/
@@ -127,7 +137,7 @@ PetscErrorCode AbutSceneSetFromOptions(AbutScene scene)
   MPI_Comm  comm = PetscObjectComm((PetscObject)scene);
   char     *bodies[ABUT_MAX_NAMES], *pairs[ABUT_MAX_NAMES], *probes[ABUT_MAX_NAMES], type[64] = "";
   PetscInt  nbodies, npairs, nprobes;
-  PetscBool adapts, estimates, profile;
+  PetscBool adapts, estimates, profile, hastol;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(scene, ABUTSCENE_CLASSID, 1);
@@ -138,10 +148,19 @@ PetscErrorCode AbutSceneSetFromOptions(AbutScene scene)
   PetscCall(AbutOptionsBool(PetscOptionsObject, "-scene_interleave", "One sweep and one adaptation a cycle", &scene->interleave, NULL));
   if (scene->interleave)
     PetscCall(AbutOptionsReal(PetscOptionsObject, "-scene_eps_u", "Relative change of the traces at the end", &scene->eps_u, NULL));
+  PetscCall(AbutOptionsReal(PetscOptionsObject, "-scene_tol", "Relative error in the energy norm to be reached", &scene->tol, &hastol));
   PetscCall(PetscOptionsString("-adaptor_type", "Type of the adaptor", NULL, type, type, sizeof(type), &adapts));
+  if ((adapts || hastol) && !scene->interleave) { /* else unread, and so an error */
+    PetscCall(AbutOptionsReal(PetscOptionsObject, "-scene_loop_share", "Part of the estimated error that the loop may leave", &scene->loop_share, NULL));
+    PetscCall(AbutOptionsBool(PetscOptionsObject, "-scene_cold", "No trace from the last mesh", &scene->cold, NULL));
+  }
   PetscCall(PetscOptionsString("-estimator_type", "Type of the estimator", NULL, type, type, sizeof(type), &estimates));
   PetscCall(AbutScenePlugins_Private(scene, PetscOptionsObject));
   PetscOptionsEnd();
+  AbutCheckInput(!hastol || (scene->tol > 0. && scene->tol < 1.), comm,
+                 "scene_tol: %g is not a relative error; give a number between 0 and 1, for example 0.01", (double)scene->tol);
+  AbutCheckInput(scene->loop_share >= 0. && scene->loop_share < 1., comm, "scene_loop_share: %g; give a number from 0 up and below 1, for example 0.3",
+                 (double)scene->loop_share);
   AbutCheckInput(scene->eps_u > 0., comm, "scene_eps_u: %g; give a positive number, for example 0.0015", (double)scene->eps_u);
   AbutCheckInput(nbodies > 0, comm,
                  "scene_bodies: missing; give the names of the bodies, or a scene file, for example examples/layers/layers.yml");
@@ -162,7 +181,8 @@ PetscErrorCode AbutSceneSetFromOptions(AbutScene scene)
   PetscCall(AbutSceneFreeNames_Private(nprobes, probes));
   PetscCall(AbutInterfaceCreate(comm, scene->nbodies, scene->body, scene->npairs, scene->pair, &scene->iface));
   if (scene->npairs) PetscCall(AbutSceneSolverFromOptions_Private(scene));
-  PetscCall(AbutSceneErrorFromOptions_Private(scene, adapts, estimates));
+  PetscCall(AbutSceneErrorFromOptions_Private(scene, (PetscBool)(adapts || hastol), estimates));
+  PetscCall(AbutSceneSetTolerance_Private(scene));
   AbutCheckInput(!scene->interleave || scene->adaptor, comm,
                  "scene_interleave: the scene has no adaptor; give adaptor_type, or leave scene_interleave out");
   PetscCall(PetscOptionsHasName(NULL, NULL, "-output_profile", &profile));

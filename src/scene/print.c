@@ -5,6 +5,7 @@
 PetscErrorCode AbutScenePrintHeader_Private(AbutScene scene)
 {
   PetscFunctionBegin;
+  PetscCall(AbutSceneViewTolerance_Private(scene, PETSC_VIEWER_STDOUT_(PetscObjectComm((PetscObject)scene))));
   PetscCall(PetscPrintf(PetscObjectComm((PetscObject)scene), "%5s %10s %8s %7s %10s %10s %12s %9s\n", "cycle", "unknowns", "cells",
                         "marked", "estimate", "eta_max", "sweeps", "seconds"));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -13,7 +14,7 @@ PetscErrorCode AbutScenePrintHeader_Private(AbutScene scene)
 PetscErrorCode AbutScenePrintCycle_Private(AbutScene scene, PetscInt nmarked)
 {
   PetscInt  unknowns = 0, cells = 0, sweeps = scene->cycle + 1;
-  PetscReal worst[2]        = {0., 0.};
+  PetscReal worst           = -1.;
   char      estimate[2][32] = {"-", "-"};
 
   PetscFunctionBegin;
@@ -29,9 +30,11 @@ PetscErrorCode AbutScenePrintCycle_Private(AbutScene scene, PetscInt nmarked)
     cells += c;
     if (!scene->eta[b]) continue;
     PetscCall(AbutEstimatorGetNorms(scene->body[b], scene->eta[b], &eta, &eta_max));
-    worst[0] = PetscMax(worst[0], eta);
-    worst[1] = PetscMax(worst[1], eta_max);
-    for (PetscInt k = 0; k < 2; ++k) PetscCall(PetscSNPrintf(estimate[k], sizeof(estimate[k]), "%.4f", (double)worst[k]));
+    worst = PetscMax(worst, eta_max);
+  }
+  if (worst >= 0.) {
+    PetscCall(PetscSNPrintf(estimate[0], sizeof(estimate[0]), "%.4f", (double)scene->discretisation));
+    PetscCall(PetscSNPrintf(estimate[1], sizeof(estimate[1]), "%.4f", (double)worst));
   }
   if (scene->snes) PetscCall(AbutInterfaceGetSweeps(scene->iface, &sweeps, NULL));
   PetscCall(PetscPrintf(PetscObjectComm((PetscObject)scene),
@@ -73,7 +76,7 @@ static PetscErrorCode AbutScenePrintCost_Private(AbutScene scene)
   MPI_Comm        comm      = PetscObjectComm((PetscObject)scene);
   const PetscReal total     = scene->mark - scene->begun;
   PetscReal       assembly  = 0.;
-  PetscInt        assembled = 0;
+  PetscInt        assembled = 0, unknowns = 0;
 
   PetscFunctionBegin;
   PetscCall(PetscPrintf(comm, "seconds: %.2f = set-up %.2f + sweeps %.2f + estimate %.2f (%.0f %%) + adapt %.2f + output %.2f\n",
@@ -82,12 +85,17 @@ static PetscErrorCode AbutScenePrintCost_Private(AbutScene scene)
                         scene->seconds[ABUT_TIME_OUTPUT]));
   for (PetscInt b = 0; b < scene->nbodies; ++b) {
     PetscReal seconds;
-    PetscInt  cells;
+    PetscInt  cells, n;
 
+    PetscCall(AbutBodyGetSize(scene->body[b], &n));
     PetscCall(AbutBodyGetAssemblyCost(scene->body[b], &seconds, &cells));
+    unknowns += n;
     assembly += seconds;
     assembled += cells;
   }
+  if (scene->snes && scene->cycle > 1)
+    PetscCall(PetscPrintf(comm, "sweeps: %" PetscInt_FMT " on %" PetscInt_FMT " meshes, worth %.1f of the last mesh\n", scene->sweepsbefore,
+                          scene->cycle, (double)(scene->work / unknowns)));
   PetscCall(PetscPrintf(comm, "element matrices and their insertion: %.2f microseconds a cell (%" PetscInt_FMT " cells)\n",
                         assembled ? (double)(1e6 * assembly / assembled) : 0., assembled));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -95,14 +103,19 @@ static PetscErrorCode AbutScenePrintCost_Private(AbutScene scene)
 
 PetscErrorCode AbutScenePrintEnd_Private(AbutScene scene)
 {
-  MPI_Comm comm = PetscObjectComm((PetscObject)scene);
+  MPI_Comm    comm = PetscObjectComm((PetscObject)scene);
+  const char *floating;
 
   PetscFunctionBegin;
   PetscCall(AbutScenePrintPairs_Private(scene));
+  PetscCall(AbutScenePrintBudget_Private(scene));
   PetscCall(AbutScenePrintCost_Private(scene));
-  PetscCall(PetscPrintf(comm, "verdict: %s%s\n", scene->verdict,
-                        scene->status == 3
-                          ? " (cells are still above the threshold: raise -adaptor_max_level or -adaptor_max_unknowns, or the threshold)"
-                          : ""));
+  PetscCall(AbutInterfaceGetFloating(scene->iface, &floating));
+  if (floating[0]) PetscCall(PetscPrintf(comm, "%s\n", floating));
+  if (scene->status == 3)
+    PetscCall(PetscPrintf(comm, "verdict: %s (%s: raise -adaptor_max_level or -adaptor_max_unknowns, or %s)\n", scene->verdict,
+                          scene->tol > 0. ? "the estimate is still above its part of scene_tol" : "cells are still above the threshold",
+                          scene->tol > 0. ? "-scene_tol" : "the threshold"));
+  else PetscCall(PetscPrintf(comm, "verdict: %s\n", scene->verdict));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -3,8 +3,6 @@
 
 /* What a run says of itself: the keys of the record */
 
-#define ABUT_CONSISTENT 1e-6 /* relative: balance of forces, energy identity */
-
 static PetscErrorCode AbutSceneSetReal_Private(AbutScene scene, const char kind[], const char name[], const char key[], PetscReal value)
 {
   char full[256];
@@ -42,7 +40,7 @@ static PetscErrorCode AbutSceneScales_Private(AbutBody body, PetscReal *force, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode AbutSceneRecordBodies_Private(AbutScene scene, PetscReal *energy_strain, PetscBool *consistent)
+static PetscErrorCode AbutSceneRecordBodies_Private(AbutScene scene, PetscBool *consistent)
 {
   AbutRecorder rec      = scene->recorder;
   PetscInt     unknowns = 0;
@@ -89,15 +87,14 @@ static PetscErrorCode AbutSceneRecordBodies_Private(AbutScene scene, PetscReal *
   PetscCall(AbutRecorderSetInt(rec, "unknowns", unknowns));
   PetscCall(AbutRecorderSetReal(rec, "energy.strain", strain));
   PetscCall(AbutRecorderSetReal(rec, "energy.work", done));
-  *energy_strain = strain;
-  PetscCall(AbutRecorderSetReal(rec, "error.linear", linear));
+  PetscCall(AbutRecorderSetReal(rec, "residual.linear", linear));
   PetscCall(AbutRecorderSetReal(rec, "check.balance", balance));
   PetscCall(AbutRecorderSetReal(rec, "check.energy", identity));
-  *consistent = (PetscBool)(balance <= ABUT_CONSISTENT && identity <= ABUT_CONSISTENT);
+  *consistent = (PetscBool)(balance <= scene->consistent && identity <= scene->consistent);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode AbutSceneRecordPairs_Private(AbutScene scene, PetscReal strain, PetscBool *consistent)
+static PetscErrorCode AbutSceneRecordPairs_Private(AbutScene scene, PetscBool *consistent)
 {
   AbutRecorder rec     = scene->recorder;
   PetscReal    penalty = 0., residual, pressure;
@@ -122,20 +119,16 @@ static PetscErrorCode AbutSceneRecordPairs_Private(AbutScene scene, PetscReal st
     PetscCall(AbutSceneSetReal_Private(scene, "pair", name, "complementarity", s.complementarity));
     PetscCall(AbutSceneSetReal_Private(scene, "pair", name, "theta", theta));
     penalty += s.energy;
-    *consistent = (PetscBool)(*consistent && s.balance <= ABUT_CONSISTENT && s.pressure_min >= 0.);
+    *consistent = (PetscBool)(*consistent && s.balance <= scene->consistent && s.pressure_min >= 0.);
   }
   PetscCall(AbutInterfaceGetResidual(scene->iface, &residual, &pressure));
   PetscCall(AbutRecorderSetReal(rec, "energy.penalty", penalty));
-  /* the penalty term shares the energy of the system: its part, in the energy norm, is what theta costs */
-  PetscCall(AbutRecorderSetReal(rec, "error.penalty", strain + penalty > 0. ? PetscSqrtReal(penalty / (strain + penalty)) : 0.));
-  PetscCall(AbutRecorderSetReal(rec, "error.loop", PetscMax(residual, pressure)));
+  PetscCall(AbutRecorderSetReal(rec, "residual.loop", PetscMax(residual, pressure)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode AbutSceneRecordEstimates_Private(AbutScene scene)
 {
-  PetscReal worst = 0.;
-
   PetscFunctionBegin;
   if (!scene->estimator) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < scene->nbodies; ++b) {
@@ -147,10 +140,8 @@ static PetscErrorCode AbutSceneRecordEstimates_Private(AbutScene scene)
     PetscCall(AbutEstimatorGetNorms(scene->body[b], scene->eta[b], &eta, &eta_max));
     PetscCall(AbutSceneSetReal_Private(scene, "eta", name, "", eta));
     PetscCall(AbutSceneSetReal_Private(scene, "eta_max", name, "", eta_max));
-    worst = PetscMax(worst, eta);
   }
   PetscCall(AbutRecorderSetInt(scene->recorder, "unknowns_estimator", scene->unknowns_estimator));
-  PetscCall(AbutRecorderSetReal(scene->recorder, "error.discretisation", worst));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -168,24 +159,39 @@ static PetscErrorCode AbutSceneRecordProbes_Private(AbutScene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The keys of this cycle; consistent: the run agrees with itself (balance of forces, energy identity, no tension) */
-PetscErrorCode AbutSceneRecord_Private(AbutScene scene, PetscBool *consistent)
+/* Sweeps, and how many of the present meshes they are worth: those of small meshes cost less */
+static PetscErrorCode AbutSceneRecordSweeps_Private(AbutScene scene)
 {
-  PetscInt  sweeps = 1, start = 0;
-  PetscReal strain = 0.;
+  PetscInt sweeps = scene->cycle + 1, start = 0, unknowns = 0;
 
   PetscFunctionBegin;
-  PetscCall(AbutRecorderSetString(scene->recorder, "verdict", scene->verdict));
-  PetscCall(AbutRecorderSetInt(scene->recorder, "cycles", scene->cycle + 1));
   if (scene->snes) PetscCall(AbutInterfaceGetSweeps(scene->iface, &sweeps, &start));
-  else sweeps = scene->cycle + 1;
+  for (PetscInt b = 0; b < scene->nbodies; ++b) {
+    PetscInt n;
+
+    PetscCall(AbutBodyGetSize(scene->body[b], &n));
+    unknowns += n;
+  }
+  scene->work += (PetscReal)(sweeps - scene->sweepsbefore) * unknowns;
   PetscCall(AbutRecorderSetInt(scene->recorder, "sweeps", sweeps));
   PetscCall(AbutRecorderSetInt(scene->recorder, "sweeps_start", start));
   PetscCall(AbutRecorderSetInt(scene->recorder, "sweeps_cycle", sweeps - scene->sweepsbefore));
+  PetscCall(AbutRecorderSetReal(scene->recorder, "sweeps_work", scene->work / unknowns));
   scene->sweepsbefore = sweeps;
-  PetscCall(AbutSceneRecordBodies_Private(scene, &strain, consistent));
-  PetscCall(AbutSceneRecordPairs_Private(scene, strain, consistent));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The keys of this cycle; consistent: the run agrees with itself (balance of forces, energy identity, no tension) */
+PetscErrorCode AbutSceneRecord_Private(AbutScene scene, PetscBool *consistent)
+{
+  PetscFunctionBegin;
+  PetscCall(AbutRecorderSetString(scene->recorder, "verdict", scene->verdict));
+  PetscCall(AbutRecorderSetInt(scene->recorder, "cycles", scene->cycle + 1));
+  PetscCall(AbutSceneRecordSweeps_Private(scene));
+  PetscCall(AbutSceneRecordBodies_Private(scene, consistent));
+  PetscCall(AbutSceneRecordPairs_Private(scene, consistent));
   PetscCall(AbutSceneRecordEstimates_Private(scene));
+  PetscCall(AbutSceneRecordBudget_Private(scene));
   PetscCall(AbutSceneRecordProbes_Private(scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

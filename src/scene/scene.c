@@ -23,9 +23,11 @@ PetscErrorCode AbutSceneCreate(MPI_Comm comm, AbutScene *scene)
   PetscAssertPointer(scene, 2);
   if (!ABUTSCENE_CLASSID) PetscCall(PetscClassIdRegister("Abut Scene", &ABUTSCENE_CLASSID));
   PetscCall(PetscHeaderCreate(*scene, ABUTSCENE_CLASSID, "AbutScene", "Bodies in contact", "Scene", comm, AbutSceneDestroy, AbutSceneView));
-  (*scene)->eps_u   = 0.0015;
-  (*scene)->verdict = "not_solved";
-  (*scene)->status  = 2;
+  (*scene)->eps_u      = 0.0015;
+  (*scene)->loop_share = 0.3;
+  (*scene)->consistent = 1e-6;
+  (*scene)->verdict    = "not_solved";
+  (*scene)->status     = 2;
   PetscCall(PetscTime(&(*scene)->begun));
   (*scene)->mark = (*scene)->begun;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -56,7 +58,10 @@ PetscErrorCode AbutSceneSetUp(AbutScene scene)
   PetscCall(AbutOptionsCheckAllRead(PetscObjectComm((PetscObject)scene), PETSC_FALSE));
   for (PetscInt i = 0; i < scene->nbodies; ++i) PetscCall(AbutBodyCheck(scene->body[i]));
   for (PetscInt i = 0; i < scene->npairs; ++i) PetscCall(AbutPairCheck(scene->pair[i]));
+  PetscCall(AbutInterfaceCheck(scene->iface));
+  PetscCall(AbutSceneCheckLoop_Private(scene));
   PetscCall(AbutInterfaceSetUp(scene->iface));
+  PetscCall(AbutSceneSetLinearTolerance_Private(scene));
   PetscCall(AbutSceneClock_Private(scene, ABUT_TIME_SETUP));
   PetscCall(PetscObjectViewFromOptions((PetscObject)scene, NULL, "-scene_view"));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -191,6 +196,7 @@ PetscErrorCode AbutSceneView(AbutScene scene, PetscViewer viewer)
   PetscCall(PetscViewerASCIIPrintf(viewer, "scene of %" PetscInt_FMT " bodies and %" PetscInt_FMT " pairs\n", scene->nbodies,
                                    scene->npairs));
   PetscCall(PetscViewerASCIIPushTab(viewer));
+  PetscCall(AbutSceneViewTolerance_Private(scene, viewer));
   for (PetscInt i = 0; i < scene->nbodies; ++i) PetscCall(AbutBodyView(scene->body[i], viewer));
   for (PetscInt i = 0; i < scene->npairs; ++i) PetscCall(AbutPairView(scene->pair[i], viewer));
   if (scene->snes) PetscCall(SNESView(scene->snes, viewer));

@@ -17,13 +17,17 @@ PetscErrorCode AbutSceneClock_Private(AbutScene scene, AbutTime account)
 /* The trace of this cycle's meshes: the start, or the last trace at the new nodes */
 static PetscErrorCode AbutSceneTrace_Private(AbutScene scene)
 {
+  PetscBool active; /* has its own start */
+
   PetscFunctionBegin;
   PetscCall(AbutInterfaceSetUp(scene->iface));
+  PetscCall(AbutSceneSetLinearTolerance_Private(scene));
   if (scene->x || !scene->snes) PetscFunctionReturn(PETSC_SUCCESS); /* the meshes have stayed */
   PetscCall(AbutInterfaceCreateVec(scene->iface, &scene->x));
   PetscCall(AbutInterfaceSetSNES(scene->iface, scene->snes));
-  if (scene->cycle) PetscCall(AbutInterfaceTransferTrace(scene->iface, scene->x));
-  else PetscCall(AbutInterfaceComputeStart(scene->iface, (AbutStart)scene->start, scene->x));
+  PetscCall(PetscObjectTypeCompare((PetscObject)scene->snes, SNESDDACTIVE, &active));
+  if (scene->cycle && !scene->cold) PetscCall(AbutInterfaceTransferTrace(scene->iface, scene->x));
+  else if (!active) PetscCall(AbutInterfaceComputeStart(scene->iface, (AbutStart)scene->start, scene->x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -56,13 +60,36 @@ static PetscErrorCode AbutSceneLoop_Private(AbutScene scene, PetscBool *converge
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Estimates every body that asks for it; marks, if there is an adaptor. As long as one body refines, the run goes on; then the worst verdict counts. */
-static PetscErrorCode AbutSceneEstimate_Private(AbutScene scene, PetscBool *marks[], AbutAdaptVerdict *verdict, PetscInt *nmarked)
+/* Estimates every body that asks for it, and all of them together */
+static PetscErrorCode AbutSceneEstimate_Private(AbutScene scene, PetscReal norm[])
 {
   PetscFunctionBegin;
-  *verdict                  = ABUT_ADAPT_DONE;
-  *nmarked                  = 0;
   scene->unknowns_estimator = 0;
+  for (PetscInt b = 0; b < scene->nbodies; ++b) {
+    PetscInt n;
+
+    if (!scene->estimates[b]) continue;
+    PetscCall(VecDestroy(&scene->eta[b]));
+    PetscCall(AbutBodyCreateCellVec(scene->body[b], &scene->eta[b]));
+    PetscCall(AbutEstimatorEstimate(scene->estimator, scene->body[b], scene->eta[b]));
+    PetscCall(AbutEstimatorGetUnknowns(scene->estimator, &n));
+    scene->unknowns_estimator += n;
+  }
+  PetscCall(AbutSceneGetDiscretisation_Private(scene, &scene->discretisation, norm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* As long as one body refines, the run goes on; then the worst verdict counts */
+static PetscErrorCode AbutSceneMark_Private(AbutScene scene, const PetscReal norm[], PetscBool *marks[], AbutAdaptVerdict *verdict,
+                                            PetscInt *nmarked)
+{
+  PetscReal target = 0., allowance[ABUT_MAX_NAMES];
+
+  PetscFunctionBegin;
+  if (scene->adaptor) PetscCall(AbutAdaptorGetTarget(scene->adaptor, &target));
+  if (target > 0.) PetscCall(AbutAdaptorGetAllowances(scene->adaptor, scene->nbodies, scene->body, scene->eta, norm, allowance));
+  *verdict = ABUT_ADAPT_DONE;
+  *nmarked = 0;
   for (PetscInt b = 0; b < scene->nbodies; ++b) {
     const AbutMeshTopology *t;
     AbutMesh                mesh;
@@ -70,13 +97,8 @@ static PetscErrorCode AbutSceneEstimate_Private(AbutScene scene, PetscBool *mark
     PetscInt                n;
 
     marks[b] = NULL;
-    if (!scene->estimates[b]) continue;
-    PetscCall(VecDestroy(&scene->eta[b]));
-    PetscCall(AbutBodyCreateCellVec(scene->body[b], &scene->eta[b]));
-    PetscCall(AbutEstimatorEstimate(scene->estimator, scene->body[b], scene->eta[b]));
-    PetscCall(AbutEstimatorGetUnknowns(scene->estimator, &n));
-    scene->unknowns_estimator += n;
-    if (!scene->adaptor) continue;
+    if (!scene->adaptor || !scene->eta[b]) continue;
+    if (target > 0.) PetscCall(AbutAdaptorSetAllowance(scene->adaptor, allowance[b]));
     PetscCall(AbutBodyGetMesh(scene->body[b], &mesh));
     PetscCall(AbutMeshGetTopology(mesh, &t));
     PetscCall(PetscMalloc1(t->ncells + 1, &marks[b])); /* not NULL, which says that the mesh stays, on a rank without cells either */
@@ -93,7 +115,7 @@ static PetscErrorCode AbutSceneAdapt_Private(AbutScene scene, PetscBool *const m
 {
   PetscFunctionBegin;
   if (scene->snes) {
-    PetscCall(AbutInterfaceKeepTrace(scene->iface, scene->x));
+    if (!scene->cold) PetscCall(AbutInterfaceKeepTrace(scene->iface, scene->x));
     PetscCall(VecDestroy(&scene->x));
     PetscCall(SNESDestroy(
       &scene->snes)); /* a new solver: what the old one remembers belongs to the old mesh, and not every type forgets it in SNESReset() */
@@ -148,6 +170,56 @@ static PetscErrorCode AbutSceneOutput_Private(AbutScene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A mesh that is going to be refined need not be solved further than to a part of its own error; the last one is solved to the end. Of the first mesh the error
+   is not known yet. */
+static PetscErrorCode AbutSceneLoosen_Private(AbutScene scene, PetscReal *rtol, PetscBool *loose)
+{
+  PetscReal       enough;
+  PetscBool       active;
+  const PetscReal expected = 0.1;
+
+  PetscFunctionBegin;
+  *loose = PETSC_FALSE;
+  if (!scene->snes || !scene->adaptor) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscObjectTypeCompare((PetscObject)scene->snes, SNESDDACTIVE, &active));
+  PetscCall(SNESGetTolerances(scene->snes, NULL, rtol, NULL, NULL, NULL));
+  enough = scene->loop_share * (scene->cycle ? scene->discretisation : expected);
+  *loose = (PetscBool)(active && enough > *rtol);
+  if (*loose) PetscCall(SNESSetTolerances(scene->snes, 0., enough, 0., PETSC_DEFAULT, PETSC_DEFAULT));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutSceneFreeMarks_Private(AbutScene scene, PetscBool *marks[])
+{
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < scene->nbodies; ++b) PetscCall(PetscFree(marks[b]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Solves, estimates and marks on the present meshes */
+static PetscErrorCode AbutSceneCycle_Private(AbutScene scene, PetscBool *marks[], PetscBool *converged, AbutAdaptVerdict *adapt, PetscInt *nmarked)
+{
+  PetscReal norm[ABUT_MAX_NAMES], rtol = 0.;
+  PetscBool loose, again = PETSC_TRUE;
+
+  PetscFunctionBegin;
+  PetscCall(AbutSceneTrace_Private(scene));
+  PetscCall(AbutSceneLoosen_Private(scene, &rtol, &loose));
+  PetscCall(AbutSceneClock_Private(scene, ABUT_TIME_SETUP));
+  while (again) {
+    PetscCall(AbutSceneFreeMarks_Private(scene, marks));
+    PetscCall(AbutSceneLoop_Private(scene, converged));
+    PetscCall(AbutSceneClock_Private(scene, ABUT_TIME_SOLVE));
+    PetscCall(AbutSceneEstimate_Private(scene, norm));
+    PetscCall(AbutSceneMark_Private(scene, norm, marks, adapt, nmarked));
+    PetscCall(AbutSceneClock_Private(scene, ABUT_TIME_ESTIMATE));
+    again = (PetscBool)(loose && *adapt != ABUT_ADAPT_REFINED && !strcmp(scene->verdict, "converged"));
+    if (again) PetscCall(SNESSetTolerances(scene->snes, 0., rtol, 0., PETSC_DEFAULT, PETSC_DEFAULT));
+    loose = PETSC_FALSE;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
    AbutSceneSolve - Runs the scene: solve, estimate, adapt, until nothing is left to refine or a limit is reached
 
@@ -159,7 +231,8 @@ static PetscErrorCode AbutSceneOutput_Private(AbutScene scene)
    Level: beginner
 
    Notes:
-   By default the loop converges on each mesh before the error is estimated; with `-scene_interleave` a cycle is one sweep and one adaptation, as in Fig. 2
+   By default the loop runs on each mesh until it leaves `-scene_loop_share` of the estimated error (ddactive) or to its tolerance (other types), and to its
+   tolerance on the last mesh; with `-scene_interleave` a cycle is one sweep and one adaptation, as in Fig. 2
    of the paper. A run that does not converge keeps and writes its last answer; see `AbutSceneGetExitStatus()`.
 
 .seealso: `AbutSceneSetFromOptions()`, `AbutSceneGetExitStatus()`
@@ -167,19 +240,15 @@ static PetscErrorCode AbutSceneOutput_Private(AbutScene scene)
 PetscErrorCode AbutSceneSolve(AbutScene scene)
 {
   PetscBool        ends = PETSC_FALSE, converged, consistent, *marks[ABUT_MAX_NAMES] = {NULL};
-  AbutAdaptVerdict adapt;
-  PetscInt         nmarked;
+  AbutAdaptVerdict adapt   = ABUT_ADAPT_DONE;
+  PetscInt         nmarked = 0;
 
   PetscFunctionBegin;
   PetscCall(AbutSceneSetUp(scene));
+  PetscCall(AbutScenePrintGamma_Private(scene));
   PetscCall(AbutScenePrintHeader_Private(scene));
   for (scene->cycle = 0; !ends; ++scene->cycle) {
-    PetscCall(AbutSceneTrace_Private(scene));
-    PetscCall(AbutSceneClock_Private(scene, ABUT_TIME_SETUP));
-    PetscCall(AbutSceneLoop_Private(scene, &converged));
-    PetscCall(AbutSceneClock_Private(scene, ABUT_TIME_SOLVE));
-    PetscCall(AbutSceneEstimate_Private(scene, marks, &adapt, &nmarked));
-    PetscCall(AbutSceneClock_Private(scene, ABUT_TIME_ESTIMATE));
+    PetscCall(AbutSceneCycle_Private(scene, marks, &converged, &adapt, &nmarked));
     PetscCall(AbutSceneRecord_Private(scene, &consistent));
     ends = AbutSceneEnds_Private(scene, converged, consistent, adapt);
     PetscCall(AbutRecorderSetString(scene->recorder, "verdict", scene->verdict));
@@ -188,7 +257,7 @@ PetscErrorCode AbutSceneSolve(AbutScene scene)
     PetscCall(AbutSceneOutput_Private(scene));
     PetscCall(AbutSceneClock_Private(scene, ABUT_TIME_OUTPUT));
     if (!ends && adapt == ABUT_ADAPT_REFINED) PetscCall(AbutSceneAdapt_Private(scene, marks));
-    for (PetscInt b = 0; b < scene->nbodies; ++b) PetscCall(PetscFree(marks[b]));
+    PetscCall(AbutSceneFreeMarks_Private(scene, marks));
     PetscCall(AbutSceneClock_Private(scene, ABUT_TIME_ADAPT));
   }
   if (scene->snes) PetscCall(AbutRecorderWriteProfile(scene->recorder, scene->iface, scene->npairs, scene->pair));

@@ -151,16 +151,125 @@ START_TEST(wrong_values_are_refused_in_one_line)
   Refused("-adaptor_threshold", "-0.5", "adaptor_threshold: -0.5 is not above 0; give the indicator that is small enough, for example 0.1");
   Refused("-adaptor_max_level", "-1", "adaptor_max_level: -1 is not a level; give a number from 0 to 28");
   Refused("-adaptor_max_unknowns", "0", "adaptor_max_unknowns: 0 is not above 0; give a number that fits the memory, for example 1000000");
-  Refused("-adaptor_type", "doerfler", "adaptor_type: no adaptor named \"doerfler\"; there are: threshold");
+  Refused("-adaptor_type", "doerfler", "adaptor_type: no adaptor named \"doerfler\"; there are: threshold, equal");
+  CkOk(PetscOptionsSetValue(NULL, "-adaptor_type", "equal"));
+  Refused("-adaptor_target", "1", "adaptor_target: 1. is not a relative error; give a number between 0 and 1, for example 0.05");
   Refused("-adaptor_bodies", "lower,",
           "adaptor_bodies: a name is empty; give names of bodies separated by commas, or leave the key out for all bodies");
+}
+END_TEST
+
+/* Equal errors: in n bodies of 16 cells those left of `edge` are high, the rest low; marks of each body */
+static void Share(PetscReal target, PetscInt n, AbutBody body[], const PetscReal norm[], PetscReal edge, PetscReal high, PetscReal low,
+                  PetscInt marked[])
+{
+  AbutAdaptor adaptor = Adaptor("-adaptor_type equal");
+  PetscReal   allowance[2], x[2], *e;
+  Vec         eta[2];
+
+  CkOk(AbutAdaptorSetTarget(adaptor, target));
+  for (PetscInt b = 0; b < n; ++b) {
+    const AbutMeshTopology *t = CkTopology(body[b]);
+
+    CkOk(AbutBodyCreateCellVec(body[b], &eta[b]));
+    CkOk(VecGetArray(eta[b], &e));
+    for (PetscInt c = 0; c < t->ncells; ++c) {
+      Middle(t, c, x);
+      e[c] = x[0] < edge ? high : low;
+    }
+    CkOk(VecRestoreArray(eta[b], &e));
+  }
+  CkOk(AbutAdaptorGetAllowances(adaptor, n, body, eta, norm, allowance));
+  for (PetscInt b = 0; b < n; ++b) {
+    AbutAdaptVerdict verdict;
+    PetscBool       *mark;
+
+    CkOk(PetscMalloc1(CkTopology(body[b])->ncells, &mark));
+    CkOk(AbutAdaptorSetAllowance(adaptor, allowance[b]));
+    CkOk(AbutAdaptorMark(adaptor, body[b], eta[b], mark, &marked[b], &verdict));
+    ck_assert_int_eq(verdict, marked[b] ? ABUT_ADAPT_REFINED : ABUT_ADAPT_DONE);
+    CkOk(PetscFree(mark));
+    CkOk(VecDestroy(&eta[b]));
+  }
+  CkOk(AbutAdaptorDestroy(&adaptor));
+}
+
+START_TEST(equal_is_done_when_the_whole_error_is_at_most_the_target)
+{
+  AbutBody        body = CkBox(PETSC_COMM_WORLD, ABUT_QUAD, 1., 4, 4, NULL, NULL);
+  const PetscReal norm = 3.;
+  PetscInt        marked;
+
+  Share(0.1, 1, &body, &norm, 0.25, 0.0999, 0.0999, &marked); /* sqrt(sum eta^2 |e|) = 0.0999, whatever the norm */
+  ck_assert_int_eq(marked, 0);
+  Share(0.1, 1, &body, &norm, 0.25, 0.1999, 0., &marked); /* a quarter of the cells: half of it */
+  ck_assert_int_eq(marked, 0);
+  Share(0.1, 1, &body, &norm, 0.25, 0.2001, 0., &marked);
+  ck_assert_int_eq(marked, 4);
+  CkOk(AbutBodyDestroy(&body));
+}
+END_TEST
+
+START_TEST(equal_refines_the_worst_cells_and_no_more_than_it_needs)
+{
+  AbutBody        body = CkBox(PETSC_COMM_WORLD, ABUT_QUAD, 1., 4, 4, NULL, NULL);
+  const PetscReal norm = 1.;
+  PetscInt        marked;
+
+  Share(0.01, 1, &body, &norm, 0.25, 1., 0.24, &marked); /* below a quarter of the worst: waits */
+  ck_assert_int_eq(marked, 4);
+  Share(0.01, 1, &body, &norm, 0.25, 1., 0.26, &marked);
+  ck_assert_int_eq(marked, 16);
+  /* every cell has more than its part; with three columns refined the square of the error is 0.25 0.26 + 0.75 0.5625/4 = 0.1705,
+     to be 0.81 target^2 */
+  Share(0.5, 1, &body, &norm, 0.75, 0.75, 0.51, &marked); /* 0.2025 */
+  ck_assert_int_eq(marked, 12);
+  Share(0.45, 1, &body, &norm, 0.75, 0.75, 0.51, &marked); /* 0.1640 */
+  ck_assert_int_eq(marked, 16);
+  Share(0.53, 1, &body, &norm, 0.25, 0.6, 0.525,
+        &marked); /* 0.2275 would take more than the first column, but the rest has less than its part */
+  ck_assert_int_eq(marked, 4);
+  CkOk(AbutBodyDestroy(&body));
+}
+END_TEST
+
+START_TEST(equal_weighs_bodies_by_their_energy)
+{
+  AbutBody body[2] = {CkBox(PETSC_COMM_WORLD, ABUT_QUAD, 1., 4, 4, NULL, NULL), CkBox(PETSC_COMM_WORLD, ABUT_QUAD, 1., 4, 4, NULL, NULL)};
+  PetscInt marked[2];
+
+  Share(0.1, 2, body, (const PetscReal[]){1., 0.2}, 0.25, 0.5, 0.4, marked);
+  ck_assert_int_eq(marked[0], 16);
+  ck_assert_int_eq(marked[1], 0);
+  Share(0.1, 2, body, (const PetscReal[]){1., 0.}, 0.25, 0.5, 0.4, marked);
+  ck_assert_int_eq(marked[0], 16);
+  ck_assert_int_eq(marked[1], 0);
+  Share(0.1, 2, body, (const PetscReal[]){1., 1.}, 0.25, 0.5, 0.4, marked);
+  ck_assert_int_eq(marked[0], 16);
+  ck_assert_int_eq(marked[1], 16);
+  for (PetscInt b = 0; b < 2; ++b) CkOk(AbutBodyDestroy(&body[b]));
+}
+END_TEST
+
+START_TEST(a_threshold_has_no_target)
+{
+  AbutAdaptor adaptor = Adaptor("");
+  PetscReal   target  = 1.;
+
+  CkOk(AbutAdaptorSetTarget(adaptor, 0.2));
+  CkOk(AbutAdaptorGetTarget(adaptor, &target));
+  ck_assert_double_eq(target, 0.);
+  CkOk(AbutAdaptorSetType(adaptor, ABUTADAPTOREQUAL));
+  CkOk(AbutAdaptorGetTarget(adaptor, &target));
+  ck_assert_double_eq(target, 0.05);
+  CkOk(AbutAdaptorDestroy(&adaptor));
 }
 END_TEST
 
 int main(int argc, char **argv)
 {
   Suite *suite = suite_create("adaptor");
-  TCase *tests = tcase_create("threshold");
+  TCase *tests = tcase_create("adaptor");
   int    status;
 
   PetscCall(AbutInitialize(&argc, &argv, NULL));
@@ -170,6 +279,10 @@ int main(int argc, char **argv)
   tcase_add_test(tests, no_refinement_passes_the_cap_on_unknowns);
   tcase_add_test(tests, the_bodies_to_adapt_are_read_and_no_list_means_all);
   tcase_add_test(tests, wrong_values_are_refused_in_one_line);
+  tcase_add_test(tests, equal_is_done_when_the_whole_error_is_at_most_the_target);
+  tcase_add_test(tests, equal_refines_the_worst_cells_and_no_more_than_it_needs);
+  tcase_add_test(tests, equal_weighs_bodies_by_their_energy);
+  tcase_add_test(tests, a_threshold_has_no_target);
   suite_add_tcase(suite, tests);
   status = CkRun(suite);
   PetscCall(AbutFinalize());

@@ -148,7 +148,8 @@ START_TEST(ddneumann_contracts_the_penetration_by_0_252)
   OpenPenalty(0.05);
   for (PetscInt k = 0; k < 4; ++k) {
     CkOk(AbutInterfaceComputeStart(iface, ABUT_START_NOCONTACT, x));
-    CkOk(PetscSNPrintf(options, sizeof(options), "-try_snes_ddneumann_gamma 0.02 -try_snes_max_it %" PetscInt_FMT, k));
+    CkOk(PetscSNPrintf(options, sizeof(options), "-try_snes_max_it %" PetscInt_FMT, k));
+    CkOk(AbutInterfaceSetGamma(iface, 0.02));
     ck_assert_int_eq(Solve(options), SNES_DIVERGED_MAX_IT);
     d[k] = theta * Pressure();
   }
@@ -161,7 +162,8 @@ START_TEST(an_iteration_of_ddneumann_is_one_sweep)
 {
   OpenPenalty(0.05);
   CkOk(AbutInterfaceComputeStart(iface, ABUT_START_NOCONTACT, x));
-  ck_assert_int_eq(Solve("-try_snes_ddneumann_gamma 0.02 -try_snes_max_it 3"), SNES_DIVERGED_MAX_IT);
+  CkOk(AbutInterfaceSetGamma(iface, 0.02));
+  ck_assert_int_eq(Solve("-try_snes_max_it 3"), SNES_DIVERGED_MAX_IT);
   ck_assert_int_eq(Sweeps(), 4); /* the last one for the residual of the last trace, which is then known */
   (void)Pressure();
   ck_assert_int_eq(Sweeps(), 4);
@@ -240,6 +242,62 @@ START_TEST(the_automatic_relaxation_knows_heights_and_materials)
   Open("-upper_mesh_box 0,1,4,1.5 -upper_material_young 7e4 -upper_material_poisson 0.25 -mid_pair_theta 1e-6");
   CkOk(AbutInterfaceGetGamma(iface, &gamma));
   ck_assert_double_eq_tol(gamma, exact, 1e-14);
+  Close();
+}
+END_TEST
+
+/* Whether this abut has SLEPc; then the spectrum is to be computed */
+static PetscBool ComputeSpectrum(void)
+{
+  PetscErrorCode code;
+
+  CkCatch(code = AbutInterfaceSetSpectrum(iface, PETSC_TRUE));
+  if (code) ck_assert_ptr_nonnull(strstr(ck_line, "built without SLEPc"));
+  return (PetscBool)!code;
+}
+
+START_TEST(the_computed_spectrum_of_two_blocks_ends_at_1_plus_C_over_theta)
+{
+  PetscReal least, largest, gamma;
+
+  OpenPenalty(penalties[_i]);
+  if (ComputeSpectrum()) {
+    CkOk(AbutInterfaceGetSpectrum(iface, &least, &largest));
+    ck_assert_double_eq(least, 1.);
+    ck_assert_double_eq_tol(largest, 1. + C / theta, 1e-7 * largest);
+    CkOk(AbutInterfaceGetGamma(iface, &gamma));
+    ck_assert_double_eq_tol(gamma, 2. / (1. + largest), 1e-14);
+    CkOk(AbutInterfaceSetGamma(iface, 0.125));
+    CkOk(AbutInterfaceGetGamma(iface, &gamma));
+    ck_assert_double_eq(gamma, 0.125);
+  }
+  Close();
+}
+END_TEST
+
+START_TEST(the_spectrum_is_computed_once_a_mesh_and_counted_as_start)
+{
+  AbutBody  bodies[2];
+  PetscInt  sides[2], sweeps, start[4];
+  PetscReal least, largest;
+
+  OpenPenalty(0.05);
+  CkOk(AbutPairGetBodies(pair, bodies, sides));
+  for (PetscInt k = 0; k < 4 && ComputeSpectrum(); ++k) {
+    if (k == 2) {
+      CkRefine(bodies[0], 1.1, 1., 0.5);
+      CkOk(AbutInterfaceReset(iface));
+      CkOk(AbutInterfaceSetUp(iface));
+    }
+    CkOk(AbutInterfaceGetSpectrum(iface, &least, &largest));
+    if (k < 2) ck_assert_double_eq_tol(largest, 1. + C / theta, 1e-6 * largest);
+    else ck_assert_double_gt(largest, 1.02 * (1. + C / theta)); /* sawteeth of coarse pressures on smaller cells */
+    CkOk(AbutInterfaceGetSweeps(iface, &sweeps, &start[k]));
+    ck_assert_int_eq(sweeps, 0);
+    if (!k) ck_assert_int_gt(start[0], 0);
+    else if (k == 2) ck_assert_int_gt(start[2], start[1]);
+    else ck_assert_int_eq(start[k], start[k - 1]);
+  }
   Close();
 }
 END_TEST
@@ -364,6 +422,8 @@ int main(int argc, char **argv)
   tcase_add_test(tc, the_winkler_start_is_exact_where_layers_are);
   tcase_add_loop_test(tc, the_automatic_relaxation_is_2_over_2_plus_C_over_theta, 0, n);
   tcase_add_test(tc, the_automatic_relaxation_knows_heights_and_materials);
+  tcase_add_loop_test(tc, the_computed_spectrum_of_two_blocks_ends_at_1_plus_C_over_theta, 0, n);
+  tcase_add_test(tc, the_spectrum_is_computed_once_a_mesh_and_counted_as_start);
   tcase_add_test(tc, a_second_look_at_the_same_trace_is_no_sweep);
   tcase_add_test(tc, the_change_of_the_paper_is_the_largest_over_the_bodies_and_none_where_a_trace_is_zero);
   tcase_add_test(tc, a_linear_trace_crosses_exactly_to_refined_meshes);

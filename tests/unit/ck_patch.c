@@ -119,7 +119,7 @@ static AbutScene Create(const Patch *patch, PetscInt variant, const char more[])
 
   CkOk(PetscSNPrintf(text, sizeof(text),
                      "-scene_bodies base,punch -scene_pairs mid -mid_pair_bodies %s,%s -mid_pair_sides %s,%s -mid_pair_pressure_side %s "
-                     "-snes_ddneumann_start nocontact %s",
+                     "%s",
                      name[punchfirst], name[!punchfirst], side[2 * !patch->along + !punchfirst], side[2 * !patch->along + punchfirst],
                      Bit(variant, 0) ? "second" : "first", more));
   for (PetscInt b = 0; b < 2; ++b) {
@@ -238,7 +238,7 @@ START_TEST(an_even_pressure_is_exact_on_any_meshes)
 {
   const Patch   *patch   = &patches[_i / nvariants];
   const PetscInt variant = _i % nvariants, unequal = _i / nvariants >= first_unequal && _i / nvariants < end_unequal;
-  AbutScene      scene = Create(patch, variant, "-mid_pair_gap 0.002 -mid_pair_theta 4 -snes_ddneumann_gamma 0.7 -snes_rtol 1e-12");
+  AbutScene      scene = Create(patch, variant, "-mid_pair_gap 0.002 -mid_pair_theta 4 -snes_rtol 1e-12");
   Box            box[2];
   AbutBody       body[2];
   PetscInt       status;
@@ -258,7 +258,9 @@ START_TEST(sides_of_unequal_length_are_in_balance)
 {
   const Patch   *patch   = &patches[first_unequal + _i / nvariants];
   const PetscInt variant = _i % nvariants, across = !patch->along;
-  AbutScene      scene = Create(patch, variant, "-mid_pair_gap 0.002 -mid_pair_theta 0.5 -snes_ddneumann_gamma 0.3 -snes_rtol 1e-11");
+  AbutScene      scene = Create(patch, variant,
+                                "-mid_pair_gap 0.002 -mid_pair_theta 0.5 -snes_type ddneumann -snes_ddneumann_start nocontact "
+                                "-snes_ddneumann_gamma 0.3 -snes_rtol 1e-11");
   Box            box[2];
   AbutBody       body[2];
   AbutInterface  iface;

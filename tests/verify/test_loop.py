@@ -51,21 +51,21 @@ def check_no_contact(record, sweeps=None):
 
 
 def test_relaxations_below_the_limit_reach_one_answer():
-    force = [run(None, layers(), f"-snes_ddneumann_gamma {gamma}", "-snes_rtol 1e-9")["pair.mid.force"] for gamma in (0.02, 0.05, 0.056)]
+    force = [run(None, layers(), f"-snes_type ddneumann -snes_ddneumann_gamma {gamma}", "-snes_rtol 1e-9")["pair.mid.force"] for gamma in (0.02, 0.05, 0.056)]
     assert all(near(one, force[0], 1e-6) for one in force), force
 
 
 def test_relaxations_beyond_the_limit_end_as_an_oscillation():
     starts = {0.06: ("winkler", "nocontact", "zero"), 0.1: ("winkler", "zero"), 0.5: ("winkler",), 1: ("zero",)}
     for gamma, start in ((gamma, start) for gamma in starts for start in starts[gamma]):
-        record = run(None, layers(), f"-snes_ddneumann_gamma {gamma} -snes_ddneumann_start {start}", expect=2)
+        record = run(None, layers(), f"-snes_type ddneumann -snes_ddneumann_gamma {gamma} -snes_ddneumann_start {start}", expect=2)
         check_failed(record, "oscillation")
         assert record["sweeps"] <= 200, (gamma, start, record["sweeps"])
 
 
 def test_at_the_limit_no_answer_is_a_wrong_one():
     exact = run(None, layers())["pair.mid.force"]
-    record = run(None, layers(), "-snes_ddneumann_gamma 0.057", expect=None)
+    record = run(None, layers(), "-snes_type ddneumann -snes_ddneumann_gamma 0.057", expect=None)
     if record["verdict"] == "converged":
         assert record.status == 0 and near(record["pair.mid.force"], exact, 1e-6)
     else:
@@ -74,13 +74,13 @@ def test_at_the_limit_no_answer_is_a_wrong_one():
 
 def test_a_failed_loop_leaves_its_best_trace():
     exact = run(None, layers())["pair.mid.force"]
-    record = run(None, layers(), "-snes_ddneumann_gamma 0.1 -snes_ddneumann_start zero", expect=2)
+    record = run(None, layers(), "-snes_type ddneumann -snes_ddneumann_gamma 0.1 -snes_ddneumann_start zero", expect=2)
     assert near(record["pair.mid.force"], exact, 0.5), record["pair.mid.force"]  # the last trace may have no contact, or thrice the force
 
 
 def test_the_automatic_relaxation_is_close_to_the_best():
     """mesh-independent sweeps: the best relaxation 0.0553 takes as many within a third"""
-    best, automatic = (run(None, layers(), f"-snes_ddneumann_gamma {gamma}")["sweeps"] for gamma in (0.0553, 0))
+    best, automatic = (run(None, layers(), f"-snes_type ddneumann -snes_ddneumann_gamma {gamma}")["sweeps"] for gamma in (0.0553, 0))
     assert automatic <= 1.34 * best, (automatic, best)
 
 
@@ -90,36 +90,36 @@ def test_the_automatic_relaxation_is_close_to_the_best():
 def test_the_stop_test_of_the_paper():
     for n in (16, 32):
         for start, sweeps, tolerance in (("winkler", 3, 0), ("nocontact", 7, 0), ("zero", 146, 2)):
-            record = run(None, layers(n), f"-snes_ddneumann_gamma 0.02 -snes_ddneumann_stop paper -snes_ddneumann_start {start}")
+            record = run(None, layers(n), f"-snes_type ddneumann -snes_ddneumann_gamma 0.02 -snes_ddneumann_stop paper -snes_ddneumann_start {start}")
             assert record["verdict"] == "converged" and abs(record["sweeps"] - sweeps) <= tolerance, (n, start, record["sweeps"])
-            assert record["error.loop"] > 0.01, "it stops far from the answer, and the record must say so"
+            assert record["error.loop"] > 3 * 0.0015, "it stops far from the answer, and the record must say so"
 
 
 def test_the_stop_test_on_the_residual_is_an_error_test():
     exact = run(None, layers(), "-snes_rtol 1e-10")["pair.mid.force"]
     for gamma in (0.005, 0.02, 0.05):
-        record = run(None, layers(), f"-snes_ddneumann_gamma {gamma} -snes_rtol 0.0015")
+        record = run(None, layers(), f"-snes_type ddneumann -snes_ddneumann_gamma {gamma} -snes_rtol 0.0015")
         assert near(record["pair.mid.force"], exact, 5 * 0.0015) and record["error.loop"] <= 0.0015, (gamma, record["pair.mid.force"])
 
 
 def test_a_body_that_does_not_move_has_not_converged_by_the_test_of_the_paper():
     """0/0: the lower body's trace is zero for ever"""
     for start in ("winkler", "zero"):
-        options = f"-snes_ddneumann_stop paper -snes_ddneumann_start {start} -snes_max_it 300"
+        options = f"-snes_type ddneumann -snes_ddneumann_stop paper -snes_ddneumann_start {start} -snes_max_it 300"
         check_failed(run(None, layers(4, gap=1), options, expect=2), "max_iterations")
 
 
 def test_too_few_iterations():
-    record = run(None, layers(8), "-snes_max_it 5", expect=2)
+    record = run(None, layers(8), "-snes_type ddneumann -snes_max_it 5", expect=2)
     check_failed(record, "max_iterations")
     assert record["sweeps"] == 6 and record["error.loop"] > 1e-8
-    check_failed(run(None, layers(8), "-snes_max_it 0", expect=2), "max_iterations")
+    check_failed(run(None, layers(8), "-snes_type ddneumann -snes_max_it 0", expect=2), "max_iterations")
 
 
 def test_a_linear_solver_that_fails():
     for body in ("lower", "upper"):
         solver = f"-{body}_pc_type jacobi -{body}_ksp_type cg -{body}_ksp_max_it 1"
-        for loop in ("", "-snes_type anderson", "-snes_type anderson -npc_snes_type ddneumann -npc_snes_max_it 1"):
+        for loop in ("", "-snes_type ddneumann", "-snes_type anderson", "-snes_type anderson -npc_snes_type ddneumann -npc_snes_max_it 1"):
             check_failed(run(None, layers(4), solver, *loop.split(), expect=2), "linear_solver")
 
 
@@ -132,7 +132,7 @@ def test_accelerators_reach_the_same_answer_in_fewer_sweeps():
     anderson = "-snes_type anderson -snes_anderson_m 20"
     limits = ((40, anderson), (40, f"{anderson} {NPC}"), (100, f"-snes_type ngmres {NPC}"), (250, f"-snes_type qn {NPC}"))
     for n in (16, 32):
-        plain = run(None, layers(n))
+        plain = run(None, layers(n), "-snes_type ddneumann")
         assert plain["sweeps"] > 250
         for most, options in limits:
             record = run(None, layers(n), options)
@@ -147,8 +147,8 @@ def test_accelerators_reach_the_same_answer_in_fewer_sweeps():
 def test_bodies_pulled_apart_do_not_touch():
     for n, shape in ((4, "quad"), (8, "triangle")):
         for start in ("winkler", "nocontact"):
-            check_no_contact(run(None, layers(n, closure=-1e-3, shape=shape), f"-snes_ddneumann_start {start}"), sweeps=1)
-    check_no_contact(run(None, layers(4, closure=-1e-3), "-snes_ddneumann_start zero"))
+            check_no_contact(run(None, layers(n, closure=-1e-3, shape=shape), f"-snes_type ddneumann -snes_ddneumann_start {start}"), sweeps=1)
+    check_no_contact(run(None, layers(4, closure=-1e-3), "-snes_type ddneumann -snes_ddneumann_start zero"))
 
 
 def test_a_wide_gap_stays_open():
@@ -172,7 +172,7 @@ def test_closing_by_nothing_leaves_no_force():
 
 def test_touching_without_force():
     for start in ("winkler", "nocontact", "zero"):
-        check_no_contact(run(None, layers(4, closure=0, gap=0), f"-snes_ddneumann_start {start}"), sweeps=1)
+        check_no_contact(run(None, layers(4, closure=0, gap=0), f"-snes_type ddneumann -snes_ddneumann_start {start}"), sweeps=1)
 
 
 def test_no_gap_anywhere():
@@ -181,7 +181,7 @@ def test_no_gap_anywhere():
         exact = 1e-3 / (c / YOUNG + 2 * (1 - NU**2) / YOUNG)
         # pressures magnify the round-off of the traces by C/theta, 364 at c = 0.005: 1e-8 is then within reach of some builds of MUMPS only
         rtol = 1e-7 if c < 0.05 else 1e-8
-        record = run(None, layers(4, c, closure=1e-3, gap=0), f"-snes_ddneumann_start {start} -snes_rtol {rtol}")
+        record = run(None, layers(4, c, closure=1e-3, gap=0), f"-snes_type ddneumann -snes_ddneumann_start {start} -snes_rtol {rtol}")
         assert near(record["pair.mid.pressure_max"], exact, 10 * rtol) and near(record["pair.mid.force"], 4 * exact, 10 * rtol), (c, start)
         assert record["pair.mid.active"] == 17 and near(record["pair.mid.contact_length"], 4, 1e-9)
         check_finite(record)
@@ -190,14 +190,14 @@ def test_no_gap_anywhere():
 # --- units and roles -----------------------------------------------------------------------------------------------------------
 
 UNITS = {"m, Pa": (1e-2, 1e6), "nm, Pa": (1e7, 1e6), "km, kPa": (1e-5, 1e3)}
-ROUNDOFF = ("time.", "memory.", "check.", "error.linear")  # and balance, complementarity: of the size of round-off
+ROUNDOFF = ("time.", "memory.", "check.", "error.linear", "residual.linear")  # and balance, complementarity: of the size of round-off
 DIGIT = 1.5e-9  # the record has ten digits: one unit in the last one
 
 
 def unit(key, length, stress):
     """What a key of the record is measured in"""
     last = key.rsplit(".", 1)[1] if "." in key else ""
-    if last in ("force",):
+    if last in ("force", "force_penalty"):
         return length * stress
     if last in ("pressure_max", "vm") or last[:1] == "s" and last[1:].isdigit():
         return stress
@@ -221,8 +221,9 @@ def check_units(small, *options):
             if isinstance(value, float):
                 scaled = record[key] / unit(key, length, stress)
                 scale = max(abs(value), YOUNG * CLOSURE * 1e-9 if key.endswith(("s12", "s11")) else 0)
-                same = abs(scaled - value) <= DIGIT * scale
-                if key == "error.loop":  # a difference of almost equal traces
+                digit = 1e-7 if key == "error.penalty" or key.endswith(".force_penalty") else DIGIT  # of a model's answer
+                same = abs(scaled - value) <= digit * scale
+                if key in ("error.loop", "residual.loop"):  # a difference of almost equal traces
                     same = near(scaled, value, 1e-4) or max(scaled, value) < 1e-10
                 assert same, (name, key, value, scaled)
             else:
@@ -231,7 +232,7 @@ def check_units(small, *options):
 
 def test_units_of_a_fixed_mesh():
     check_units({"n": 8})
-    check_units({"n": 4, "shape": "triangle"}, "-lower_mesh_cells 12,3", "-snes_ddneumann_start nocontact")
+    check_units({"n": 4, "shape": "triangle"}, "-lower_mesh_cells 12,3", "-snes_type ddneumann -snes_ddneumann_start nocontact")
     check_units({"n": 8, "shape": "triangle"}, "-lower_mesh_cells 12,3", "-snes_type anderson")
 
 

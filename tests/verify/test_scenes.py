@@ -36,7 +36,7 @@ def test_a_body_in_no_pair_does_not_hinder_the_papers_stop():
     lower = body("lower", "0,0,4,1", "16,4", "left_u1 0", "bottom_u2 0")
     upper = body("upper", "0,1,4,2", "16,4", "left_u1 0", "top_u2 0-1.366e-3")
     alone = body("alone", "10,0,11,1", "4,4", "bottom_u1 0", "bottom_u2 0", "top_u2 0-1e-3")
-    pair = "-scene_pairs mid -mid_pair_bodies upper,lower -mid_pair_sides bottom,top -mid_pair_gap 1e-3*x^2 -snes_ddneumann_gamma 0.02 -snes_ddneumann_stop paper"
+    pair = "-scene_pairs mid -mid_pair_bodies upper,lower -mid_pair_sides bottom,top -mid_pair_gap 1e-3*x^2 -snes_type ddneumann -snes_ddneumann_gamma 0.02 -snes_ddneumann_stop paper"
     two = run(None, "-scene_bodies lower,upper", pair, lower, upper)
     three = run(None, "-scene_bodies lower,upper,alone", pair, lower, upper, alone)
     assert two["sweeps"] == three["sweeps"] < 10 and abs(two["pair.mid.force"] / three["pair.mid.force"] - 1) < 1e-9, (two, three)

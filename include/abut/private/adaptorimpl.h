@@ -22,4 +22,6 @@ struct _p_AbutAdaptor {
 };
 
 PETSC_EXTERN PetscErrorCode AbutAdaptorRegister(const char[], PetscErrorCode (*)(AbutAdaptor));
+PETSC_INTERN PetscErrorCode AbutAdaptorClearBodies_Private(AbutAdaptor);
 PETSC_INTERN PetscErrorCode AbutAdaptorCreate_Threshold(AbutAdaptor);
+PETSC_INTERN PetscErrorCode AbutAdaptorCreate_Equal(AbutAdaptor);

@@ -5,6 +5,7 @@
 #include <petsctime.h>
 
 #define ABUT_MAX_SIDES 64
+#define ABUT_MAX_MODES 3
 
 /* What the scene says about one component of one side */
 typedef struct {
@@ -19,14 +20,18 @@ struct _p_AbutBody {
   AbutCondition condition[ABUT_MAX_SIDES][2];
 
   /* of the present mesh */
-  PetscInt      generation;     /* of the mesh for which the rest was made, -1 if it is to be made anew */
-  Mat           A;              /* stiffness, rows and columns of prescribed unknowns replaced by mu on the diagonal */
-  Mat           Ac;             /* rows of the stiffness at the prescribed unknowns: for the lift and the reactions */
-  IS            constrained;    /* owned prescribed unknowns, global numbers */
-  Vec           prescribed;     /* their values, laid out like the rows of Ac */
-  Vec           load, lift;     /* nodal forces of the tractions; -Ac^T times the prescribed values */
-  Vec           contact;        /* nodal contact forces of the last solve */
-  Vec           rhs, u;         /* u has ghost values */
+  PetscInt      generation;  /* of the mesh for which the rest was made, -1 if it is to be made anew */
+  Mat           A;           /* stiffness, rows and columns of prescribed unknowns replaced by mu on the diagonal */
+  Mat           P;           /* what is preconditioned or factored: A, or if modes are free A on springs that resist them */
+  Mat           Ac;          /* rows of the stiffness at the prescribed unknowns: for the lift and the reactions */
+  IS            constrained; /* owned prescribed unknowns, global numbers */
+  Vec           prescribed;  /* their values, laid out like the rows of Ac */
+  Vec           load, lift;  /* nodal forces of the tractions; -Ac^T times the prescribed values */
+  Vec           contact;     /* nodal contact forces that act */
+  Vec           rhs, u;      /* of the last linear solve; u has ghost values */
+  PetscInt      nmodes;      /* rigid motions that no prescribed displacement resists */
+  Vec           mode[ABUT_MAX_MODES];
+  MatNullSpace  free;           /* the modes, NULL if there are none */
   PetscReal    *vertexu;        /* [2*nvertices] displacement at all local vertices, hanging ones too */
   AbutBoundary *boundary;       /* skeleton: contours, nodes, sides; no values */
   PetscInt     *boundaryglobal; /* [n] global vertex numbers of its nodes */
@@ -50,6 +55,10 @@ PETSC_INTERN PetscErrorCode AbutBodyCreateSolver_Private(AbutBody);
 PETSC_INTERN PetscErrorCode AbutBodyChooseSolver_Private(AbutBody, PetscInt, PetscBool);
 PETSC_INTERN PetscErrorCode AbutBodyGiveFactorRoom_Private(AbutBody);
 PETSC_INTERN PetscErrorCode AbutBodyReset_Private(AbutBody);
+PETSC_INTERN PetscErrorCode AbutBodyNeedSetUp_Private(AbutBody);
+PETSC_INTERN PetscErrorCode AbutBodyModesSetUp_Private(AbutBody);
+PETSC_INTERN PetscErrorCode AbutBodyModesReset_Private(AbutBody);
+PETSC_INTERN PetscErrorCode AbutBodySpread_Private(AbutBody);
 PETSC_INTERN PetscErrorCode AbutBodyBoundarySetUp_Private(AbutBody);
 PETSC_INTERN PetscErrorCode AbutBodyBoundaryReset_Private(AbutBody);
 PETSC_INTERN PetscErrorCode AbutBodyGatherBoundary_Private(AbutBody, Vec, const PetscReal *[]);

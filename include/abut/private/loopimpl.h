@@ -3,31 +3,53 @@
 #include <abutloop.h>
 #include <petsc/private/snesimpl.h>
 
-/* A trace kept while a mesh adapts: values at the nodes of one side */
+/* Values at the nodes of one side, kept while a mesh adapts */
 typedef struct {
   PetscInt   n;
   PetscReal *x, *value;
 } AbutOldTrace;
+
+/* What the loop knows of the bodies without solving them: nodal contact forces F -> penetrations of the contact nodes of all pairs.
+   With F >= 0, S the compliance of all bodies, soft_i = theta/D_i and G the penetrations by free rigid motions:
+     F complementary to  b - (S + soft) F + G a,   G'F = e   */
+typedef struct {
+  PetscInt   n, m;         /* contact nodes; free motions of all bodies */
+  PetscInt  *first, *node; /* [npairs+1] first contact node of each pair; [n] number among the nodes of the pair's pressure side */
+  PetscReal *D, *soft;     /* [n] nodal lengths; theta/D */
+  PetscReal *open;         /* [n] penetrations of bodies that stand still: minus the gap */
+  PetscReal *S;            /* [n*n] at first the layers' compliance, then corrected by every sweep */
+  PetscReal *G, *e;        /* [m*n] penetrations by unit motions; [m] resultants of the loads along them */
+  PetscInt  *owner, *mode; /* [m] whose motion, and its number there */
+  PetscReal *factor, *X;   /* [n*n], [(m+1)*n] work */
+  PetscReal *b;            /* [n] work */
+  PetscInt  *active;       /* [n] work */
+} *AbutContactModel;
 
 struct _p_AbutInterface {
   PETSCHEADER(int);
   PetscInt  nbodies, npairs;
   AbutBody *body;
   AbutPair *pair;
+  PetscInt *bodyof; /* [2*npairs] number of the body of side t = 2*pair+side */
 
   /* of the present meshes; index t = 2*pair+side */
-  PetscBool   setupcalled;
-  PetscInt   *offset; /* [2*npairs+1] where each side's values begin among all */
-  PetscInt    nowned; /* values owned by this rank, each by the owner of its node */
-  PetscInt   *owned;  /* [nowned] their places among all */
-  PetscInt   *place;  /* [all] the place of the k-th value in the order of the ranks */
-  VecScatter  toall;
-  Vec         everywhere;
-  PetscReal   gamma; /* the user's relaxation, 0 for the automatic one */
-  PetscReal  *x, *g; /* [all] the trace of the last sweep and its image, on every rank */
-  PetscReal  *xbest; /* [all] the trace of least residual since the set-up */
-  PetscReal **p;     /* [npairs] the pressures of the last sweep */
-  Vec        *force; /* [nbodies] nodal contact forces */
+  PetscBool        setupcalled;
+  PetscInt        *offset; /* [2*npairs+1] where each side's values begin among all */
+  PetscInt         nowned; /* values owned by this rank, each by the owner of its node */
+  PetscInt        *owned;  /* [nowned] their places among all */
+  PetscInt        *place;  /* [all] the place of the k-th value in the order of the ranks */
+  VecScatter       toall;
+  Vec              everywhere;
+  PetscReal        gamma;     /* the user's relaxation, 0 for the automatic one */
+  PetscBool        spectrum;  /* the automatic one from computed eigenvalues */
+  PetscReal        largest;   /* eigenvalue of I - dG, computed on these meshes; 0 not yet */
+  PetscReal       *x, *g;     /* [all] the trace of the last sweep and its image, on every rank */
+  PetscReal       *xbest;     /* [all] the trace of least residual since the set-up */
+  PetscReal      **p;         /* [npairs] the pressures of the last sweep */
+  PetscReal      **guess;     /* [npairs] those that the contact model gave before any sweep */
+  Vec             *force, *u; /* [nbodies] nodal contact forces; displacements, the bodies' own */
+  PetscBool        acts;      /* p acts in the bodies as they are, and g holds their traces */
+  AbutContactModel model;     /* made when first asked for */
 
   Vec              G;  /* image of the trace of the last sweep */
   PetscObjectId    id; /* of that trace vector, and its state then: a second look at the same point is no sweep */
@@ -36,15 +58,46 @@ struct _p_AbutInterface {
   PetscReal        residual, pressureresidual; /* |G-x|/|G| and the same of the pressures, of the last sweep */
   PetscBool        linearfailed;
   PetscReal        residualbest;
-  PetscReal        best[2]; /* least residual of the present window of iterations, and of the one before */
-  PetscReal        rate;    /* what the solver's slowest mode loses in an iteration, 0 unknown */
-  const char      *failure; /* why the stop test gave up, in one word */
-  AbutOldTrace    *old;     /* [2*npairs] */
+  PetscReal        fnorm;        /* of F at the first iterate */
+  PetscReal        best[2];      /* least norm of F in the present window of iterations, and of the one before */
+  PetscReal        rate;         /* what the solver's slowest mode loses in an iteration, 0 unknown */
+  const char      *failure;      /* why the stop test gave up, in one word */
+  char             floating[256]; /* the body that contact does not hold, and its motion */
+  AbutOldTrace    *old;          /* [2*npairs] traces */
+  AbutOldTrace    *oldpressure;  /* [npairs] pressures less the guess, along the first side: what the model did not know */
+  PetscBool        guessed, warm; /* guess belongs to the present meshes; oldpressure is there */
 };
 
 PETSC_INTERN PetscErrorCode SNESCreate_DDNeumann(SNES);
-PETSC_INTERN PetscErrorCode AbutInterfaceSweepFull_Private(AbutInterface);
+PETSC_INTERN PetscErrorCode SNESCreate_DDActive(SNES);
+
+/* What is PETSC_EXTERN here is so for the unit tests */
+
+/* sweep.c: pressures -> nodal forces on the bodies; their displacements -> traces; both with one solve per body between */
+PETSC_INTERN PetscErrorCode AbutInterfaceForces_Private(AbutInterface, PetscReal *const[], Vec[]);
+PETSC_INTERN PetscErrorCode AbutInterfaceTraces_Private(AbutInterface, const Vec[], PetscReal[]);
+PETSC_INTERN PetscErrorCode AbutInterfaceSolveBodies_Private(AbutInterface);
+PETSC_INTERN PetscErrorCode AbutInterfaceIncrement_Private(AbutInterface, PetscReal *const[], Vec[], Vec[], PetscReal[]);
+PETSC_INTERN PetscErrorCode AbutInterfaceCheckSolve_Private(AbutInterface, AbutBody);
+
+PETSC_INTERN PetscErrorCode AbutInterfaceSetFloating_Private(AbutInterface, PetscInt, PetscInt);
+PETSC_INTERN PetscErrorCode AbutInterfaceTransferPressure_Private(AbutInterface);
 PETSC_INTERN PetscErrorCode AbutInterfaceReplicate_Private(AbutInterface, Vec, PetscReal[]);
-PETSC_INTERN PetscErrorCode AbutInterfaceLocalize_Private(AbutInterface, const PetscReal[], Vec);
-PETSC_INTERN PetscErrorCode AbutInterfaceBodyChange_Private(AbutInterface, Vec, Vec, PetscReal[], PetscReal[]);
+PETSC_EXTERN PetscErrorCode AbutInterfaceLocalize_Private(AbutInterface, const PetscReal[], Vec);
+
+/* gamma.c; spectrum.c: the only file that knows SLEPc, or that it is missing */
+PETSC_INTERN PetscErrorCode AbutInterfaceSetMixing_Private(AbutInterface, SNES);
+PETSC_INTERN PetscErrorCode AbutInterfaceCheckSpectrum_Private(AbutInterface);
+PETSC_INTERN PetscErrorCode AbutInterfaceComputeSpectrum_Private(AbutInterface, PetscReal *);
+
+/* layers.c, model.c, programme.c: the contact model */
+PETSC_EXTERN PetscErrorCode AbutInterfaceGetModel_Private(AbutInterface, AbutContactModel *);
+PETSC_INTERN PetscErrorCode AbutInterfaceLayers_Private(AbutInterface, AbutContactModel);
+PETSC_INTERN PetscErrorCode AbutInterfacePenetration_Private(AbutInterface, AbutContactModel, const PetscReal[], PetscReal[]);
+PETSC_EXTERN PetscErrorCode AbutInterfaceComply_Private(AbutInterface, AbutContactModel, const PetscReal[], Vec[], Vec[], PetscReal[]);
+PETSC_EXTERN PetscErrorCode AbutContactModelLearn_Private(AbutContactModel, const PetscReal[], const PetscReal[]);
+PETSC_EXTERN PetscErrorCode AbutContactModelSolve_Private(AbutContactModel, const PetscReal[], const PetscReal[], PetscReal[], PetscReal[], PetscInt *,
+                                                          PetscBool *);
+PETSC_INTERN PetscReal      AbutContactModelEnergy_Private(const AbutContactModel, const PetscReal[], const PetscReal[]);
+PETSC_EXTERN PetscErrorCode AbutContactModelDestroy_Private(AbutContactModel *);
 PETSC_EXTERN PetscLogEvent  ABUTINTERFACE_Sweep;

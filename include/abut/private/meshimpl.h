@@ -20,6 +20,7 @@ struct _p_AbutMesh {
   PetscInt         cells[2];
   AbutShape        shape;
   PetscBool        boxset, setupcalled;
+  AbutExpression   size; /* wanted length of the cells of the first mesh, NULL: as they are */
   DM               dm;
   PetscInt         generation; /* counts the meshes: 0 is the first */
   AbutMeshTopology topology;
@@ -36,6 +37,7 @@ static inline PetscReal AbutMeshGridLine_Private(AbutMesh mesh, PetscInt d, Pets
 
 PETSC_INTERN PetscErrorCode AbutMeshCreate_Forest(AbutMesh);
 PETSC_INTERN PetscErrorCode AbutMeshCreate_Triangles(AbutMesh);
+PETSC_INTERN PetscErrorCode AbutMeshRefineToSize_Private(AbutMesh);
 PETSC_INTERN PetscErrorCode AbutMeshTopologyBuild_Private(AbutMesh);
 PETSC_INTERN PetscErrorCode AbutMeshTopologyReset_Private(AbutMesh);
 PETSC_INTERN PetscErrorCode AbutMeshSidesBuild_Private(AbutMesh);

@@ -39,4 +39,3 @@ struct _p_AbutPair {
 
 PETSC_INTERN PetscErrorCode AbutPairMortar_Private(AbutPair);
 PETSC_INTERN PetscErrorCode AbutPairMortarReset_Private(AbutPair);
-PETSC_INTERN PetscErrorCode AbutPairPenetration_Private(AbutPair, const PetscReal *const[2], PetscReal[]);

@@ -38,11 +38,18 @@ struct _p_AbutScene {
   PetscInt      start;
   PetscBool     interleave, setupcalled;
   PetscReal     eps_u;
+  PetscReal     loop_share; /* of the estimated error that the loop may leave on a mesh to be refined */
+  PetscBool     cold;       /* every mesh begins without what the last one left */
+  PetscReal     tol;        /* relative error asked for, 0: not given */
+  PetscReal     consistent; /* relative: balance of forces, energy identity */
 
   Vec            x; /* the trace */
   Vec            eta[ABUT_MAX_NAMES];
   PetscInt       cycle, sweepsbefore, unknowns_estimator;
+  PetscReal      work; /* sweeps times unknowns */
   PetscLogDouble begun, mark, seconds[ABUT_TIMES];
+  AbutErrors     errors;         /* of the last solve */
+  PetscReal      discretisation; /* the same, of the estimated bodies */
   const char    *verdict;
   PetscInt       status;
 };
@@ -50,9 +57,20 @@ struct _p_AbutScene {
 PETSC_INTERN PetscErrorCode AbutSceneReadNames_Private(AbutScene, AbutOptionItems, const char[], const char[], PetscInt *, char *[]);
 PETSC_INTERN PetscErrorCode AbutSceneProbesFromOptions_Private(AbutScene, PetscInt, char *[]);
 PETSC_INTERN PetscErrorCode AbutSceneSolverFromOptions_Private(AbutScene);
+PETSC_INTERN PetscErrorCode AbutSceneCheckLoop_Private(AbutScene);
+PETSC_INTERN PetscErrorCode AbutScenePrintGamma_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutSceneRecord_Private(AbutScene, PetscBool *);
 PETSC_INTERN PetscErrorCode AbutSceneRecordTimes_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutScenePrintHeader_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutScenePrintCycle_Private(AbutScene, PetscInt);
 PETSC_INTERN PetscErrorCode AbutScenePrintEnd_Private(AbutScene);
+/* budget.c */
+PETSC_INTERN PetscErrorCode AbutSceneGetDiscretisation_Private(AbutScene, PetscReal *, PetscReal[]);
+PETSC_INTERN PetscErrorCode AbutSceneRecordBudget_Private(AbutScene);
+PETSC_INTERN PetscErrorCode AbutScenePrintBudget_Private(AbutScene);
+/* tolerance.c */
+PETSC_INTERN PetscErrorCode AbutSceneSetTolerance_Private(AbutScene);
+PETSC_INTERN PetscErrorCode AbutSceneSetLinearTolerance_Private(AbutScene);
+PETSC_INTERN PetscReal      AbutSceneLoopTolerance_Private(AbutScene);
+PETSC_INTERN PetscErrorCode AbutSceneViewTolerance_Private(AbutScene, PetscViewer);
 PETSC_INTERN PetscErrorCode AbutSceneClock_Private(AbutScene, AbutTime);

@@ -1,0 +1,380 @@
+#include <abut/private/bodyimpl.h> /*I "abutbody.h" I*/
+
+/* Rigid motions that no prescribed displacement resists. Their shapes follow from the box and the conditions; on a mesh they are the null
+   space of the stiffness, and a few springs that carry nothing make it a matrix with a factor. */
+
+#define ABUT_MOVE_X 0
+#define ABUT_MOVE_Y 1
+#define ABUT_TURN   2
+
+typedef struct {
+  PetscInt  n, kind[ABUT_MAX_MODES];
+  PetscReal center[2]; /* about which the body may turn */
+} AbutFreeMotions;
+
+/* A translation is free if its component is prescribed nowhere. A turn about (x0, y0) leaves u1 in peace on the line y = y0 and u2 on
+   x = x0, so it is free if all prescribed u1 lie on one line of constant y, and all prescribed u2 on one of constant x. The ends of the
+   straight sides stand for all their points. */
+static PetscErrorCode AbutBodyFindFreeMotions_Private(AbutBody body, AbutFreeMotions *f)
+{
+  PetscReal lower[2], upper[2], least[2], most[2], size;
+  PetscInt  nsides, n[2] = {0, 0};
+
+  PetscFunctionBegin;
+  PetscCall(AbutMeshGetBox(body->mesh, lower, upper));
+  PetscCall(AbutMeshGetSideCount(body->mesh, &nsides));
+  size = PetscMax(upper[0] - lower[0], upper[1] - lower[1]);
+  for (PetscInt e = 0; e < 2; ++e) {
+    least[e] = upper[e];
+    most[e]  = lower[e];
+  }
+  for (PetscInt s = 0; s < nsides; ++s)
+    for (PetscInt d = 0; d < 2; ++d) {
+      PetscReal ends[4], normal[2];
+
+      if (body->condition[s][d].type != ABUT_DISPLACEMENT) continue;
+      PetscCall(AbutMeshGetSideEnds(body->mesh, s, ends, normal));
+      for (PetscInt end = 0; end < 2; ++end) {
+        least[!d] = PetscMin(least[!d], ends[2 * end + !d]);
+        most[!d]  = PetscMax(most[!d], ends[2 * end + !d]);
+      }
+      ++n[d];
+    }
+  f->n = 0;
+  for (PetscInt d = 0; d < 2; ++d) {
+    if (!n[d]) f->kind[f->n++] = d ? ABUT_MOVE_Y : ABUT_MOVE_X;
+    f->center[!d] = 0.5 * (n[d] ? least[!d] + most[!d] : lower[!d] + upper[!d]);
+  }
+  if ((!n[0] || most[1] - least[1] <= 1e-10 * size) && (!n[1] || most[0] - least[0] <= 1e-10 * size)) f->kind[f->n++] = ABUT_TURN;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void AbutMotionAt_Private(PetscInt kind, const PetscReal center[2], const PetscReal x[2], PetscReal u[2])
+{
+  u[0] = kind == ABUT_TURN ? center[1] - x[1] : (PetscReal)(kind == ABUT_MOVE_X);
+  u[1] = kind == ABUT_TURN ? x[0] - center[0] : (PetscReal)(kind == ABUT_MOVE_Y);
+}
+
+/*@
+   AbutBodyGetFreeModeCount - How many rigid motions no prescribed displacement resists; needs no mesh yet
+
+   Not Collective
+
+   Input Parameter:
+.  body - the body, its box and its conditions set
+
+   Output Parameter:
+.  n - 0 to 3
+
+   Level: intermediate
+
+   Note:
+   Prescribed components count on whole sides, whatever their values; contact does not count.
+
+.seealso: `AbutBodyGetFreeModeName()`, `AbutBodyGetFreeMotion()`, `AbutBodyGetFreeModes()`
+@*/
+PetscErrorCode AbutBodyGetFreeModeCount(AbutBody body, PetscInt *n)
+{
+  AbutFreeMotions f;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, ABUTBODY_CLASSID, 1);
+  PetscCall(AbutBodyFindFreeMotions_Private(body, &f));
+  *n = f.n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutBodyFindFreeMotion_Private(AbutBody body, PetscInt k, AbutFreeMotions *f)
+{
+  PetscFunctionBegin;
+  PetscCall(AbutBodyFindFreeMotions_Private(body, f));
+  PetscCheck(k >= 0 && k < f->n, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "Free mode %" PetscInt_FMT " is not below %" PetscInt_FMT, k,
+             f->n);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutBodyGetFreeModeName - A free rigid motion in words; needs no mesh yet
+
+   Not Collective
+
+   Input Parameters:
++  body - the body
+.  k    - number of the motion, below that of `AbutBodyGetFreeModeCount()`
+-  len  - room in text, 64 is enough
+
+   Output Parameter:
+.  text - "moving along x", "moving along y", "turning about (x, y)"
+
+   Level: intermediate
+
+.seealso: `AbutBodyGetFreeModeCount()`, `AbutBodyGetFreeMotion()`
+@*/
+PetscErrorCode AbutBodyGetFreeModeName(AbutBody body, PetscInt k, char text[], size_t len)
+{
+  AbutFreeMotions f;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, ABUTBODY_CLASSID, 1);
+  PetscCall(AbutBodyFindFreeMotion_Private(body, k, &f));
+  if (f.kind[k] == ABUT_TURN) PetscCall(PetscSNPrintf(text, len, "turning about (%g, %g)", (double)f.center[0], (double)f.center[1]));
+  else PetscCall(PetscSNPrintf(text, len, "moving along %s", f.kind[k] == ABUT_MOVE_X ? "x" : "y"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutBodyGetFreeMotion - A free rigid motion at a point; needs no mesh yet
+
+   Not Collective
+
+   Input Parameters:
++  body - the body
+.  k    - number of the motion, below that of `AbutBodyGetFreeModeCount()`
+-  x    - [2] the point
+
+   Output Parameter:
+.  u - [2] its displacement: a unit vector, or for a turn by the small angle 1 about (x0, y0) the vector (y0 - y, x - x0)
+
+   Level: intermediate
+
+.seealso: `AbutBodyGetFreeModeName()`, `AbutBodyGetFreeModes()`
+@*/
+PetscErrorCode AbutBodyGetFreeMotion(AbutBody body, PetscInt k, const PetscReal x[2], PetscReal u[2])
+{
+  AbutFreeMotions f;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, ABUTBODY_CLASSID, 1);
+  PetscCall(AbutBodyFindFreeMotion_Private(body, k, &f));
+  AbutMotionAt_Private(f.kind[k], f.center, x, u);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The unknowns of one motion on the present mesh */
+static PetscErrorCode AbutBodyCreateMotion_Private(AbutBody body, PetscInt kind, const PetscReal center[2], Vec *mode)
+{
+  const AbutMeshTopology *t;
+  PetscScalar            *a;
+
+  PetscFunctionBegin;
+  PetscCall(AbutMeshGetTopology(body->mesh, &t));
+  PetscCall(AbutBodyCreateVec(body, mode));
+  PetscCall(VecGetArrayWrite(*mode, &a));
+  for (PetscInt v = 0; v < t->nvertices; ++v)
+    if (t->anchor[2 * v] < 0 && t->unknown[v] < t->nowned) AbutMotionAt_Private(kind, center, t->x + 2 * v, a + 2 * t->unknown[v]);
+  PetscCall(VecRestoreArrayWrite(*mode, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Gram and Schmidt, twice: on a mesh fine at one end a turn about the middle of the box is almost a translation */
+static PetscErrorCode AbutOrthonormalize_Private(PetscInt n, Vec mode[])
+{
+  PetscScalar dot[ABUT_MAX_MODES];
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < n; ++k)
+    for (PetscInt again = 0; again < 2; ++again) {
+      PetscCall(VecMDot(mode[k], k, mode, dot));
+      for (PetscInt i = 0; i < k; ++i) dot[i] = -dot[i];
+      PetscCall(VecMAXPY(mode[k], k, dot, mode));
+      PetscCall(VecNormalize(mode[k], NULL));
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* As many boundary unknowns as there are motions, such that springs there resist all of them: rows of largest pivot, the first of equals,
+   in the order of the contours, which no distribution changes */
+static PetscErrorCode AbutBodyFindSupports_Private(AbutBody body, const AbutFreeMotions *f, PetscInt support[])
+{
+  const AbutBoundary *b = body->boundary;
+  PetscReal          *row, lower[2], upper[2];
+
+  PetscFunctionBegin;
+  PetscCall(AbutMeshGetBox(body->mesh, lower, upper));
+  PetscCall(PetscMalloc1(2 * b->n * f->n, &row));
+  for (PetscInt i = 0; i < b->n; ++i)
+    for (PetscInt k = 0; k < f->n; ++k) {
+      const PetscReal scale = f->kind[k] == ABUT_TURN ? PetscMax(upper[0] - lower[0], upper[1] - lower[1]) : 1.;
+      PetscReal       u[2];
+
+      AbutMotionAt_Private(f->kind[k], f->center, b->x + 2 * i, u);
+      for (PetscInt d = 0; d < 2; ++d) row[(2 * i + d) * f->n + k] = u[d] / scale;
+    }
+  for (PetscInt step = 0; step < f->n; ++step) {
+    PetscReal pivot[ABUT_MAX_MODES] = {0.}, most = 0.;
+
+    for (PetscInt i = 0; i < 2 * b->n; ++i) {
+      PetscReal norm = 0.;
+
+      for (PetscInt k = 0; k < f->n; ++k) norm += PetscSqr(row[i * f->n + k]);
+      if (norm <= most) continue;
+      most          = norm;
+      support[step] = 2 * body->boundaryglobal[i / 2] + i % 2;
+      for (PetscInt k = 0; k < f->n; ++k) pivot[k] = row[i * f->n + k] / PetscSqrtReal(norm);
+    }
+    for (PetscInt i = 0; i < 2 * b->n; ++i) {
+      PetscReal dot = 0.;
+
+      for (PetscInt k = 0; k < f->n; ++k) dot += row[i * f->n + k] * pivot[k];
+      for (PetscInt k = 0; k < f->n; ++k) row[i * f->n + k] -= dot * pivot[k];
+    }
+  }
+  PetscCall(PetscFree(row));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A on springs. Forces without a part along the motions load no spring of a statically determinate support, so the solution with P is one
+   with A. Soft springs do not disturb multigrid: with BoomerAMG, CG takes 12 iterations where it takes 10 for the body held, 13 with
+   springs a hundred times stiffer, and 17 if the three unknowns are pinned instead, by which GAMG loses its way altogether. */
+#define ABUT_SPRING 0.01 /* of the shear modulus */
+
+static PetscErrorCode AbutBodySupport_Private(AbutBody body, const AbutFreeMotions *f)
+{
+  PetscInt support[ABUT_MAX_MODES], low, high;
+
+  PetscFunctionBegin;
+  PetscCall(AbutBodyFindSupports_Private(body, f, support));
+  PetscCall(MatDuplicate(body->A, MAT_COPY_VALUES, &body->P));
+  PetscCall(MatGetOwnershipRange(body->P, &low, &high));
+  for (PetscInt k = 0; k < f->n; ++k)
+    if (support[k] >= low && support[k] < high) PetscCall(MatSetValue(body->P, support[k], support[k], ABUT_SPRING * body->mu, ADD_VALUES));
+  PetscCall(MatAssemblyBegin(body->P, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(body->P, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All three rigid motions, for multigrid that wants to know what is almost free */
+static PetscErrorCode AbutBodySetNearNullSpace_Private(AbutBody body, const PetscReal center[2], Mat A)
+{
+  MatNullSpace near;
+  Vec          mode[3];
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < 3; ++k) PetscCall(AbutBodyCreateMotion_Private(body, k, center, &mode[k]));
+  PetscCall(AbutOrthonormalize_Private(3, mode));
+  PetscCall(MatNullSpaceCreate(PetscObjectComm((PetscObject)A), PETSC_FALSE, 3, mode, &near));
+  PetscCall(MatSetNearNullSpace(A, near));
+  PetscCall(MatNullSpaceDestroy(&near));
+  for (PetscInt k = 0; k < 3; ++k) PetscCall(VecDestroy(&mode[k]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The free modes of the present mesh, and with them the matrices of the solver: A, which knows its null space, and P, which has none */
+PetscErrorCode AbutBodyModesSetUp_Private(AbutBody body)
+{
+  AbutFreeMotions f;
+
+  PetscFunctionBegin;
+  PetscCall(AbutBodyFindFreeMotions_Private(body, &f));
+  for (PetscInt k = 0; k < f.n; ++k) {
+    PetscCall(AbutBodyCreateMotion_Private(body, f.kind[k], f.center, &body->mode[k]));
+    PetscCall(VecISSet(body->mode[k], body->constrained, 0.));
+  }
+  body->nmodes = f.n;
+  PetscCall(AbutOrthonormalize_Private(f.n, body->mode));
+  if (f.n) {
+    PetscCall(AbutBodySupport_Private(body, &f));
+    PetscCall(MatNullSpaceCreate(PetscObjectComm((PetscObject)body), PETSC_FALSE, f.n, body->mode, &body->free));
+    PetscCall(MatSetNullSpace(body->A, body->free));
+    PetscCall(MatSetOption(body->A, MAT_SYMMETRIC, PETSC_TRUE));
+  } else {
+    PetscCall(PetscObjectReference((PetscObject)body->A));
+    body->P = body->A;
+  }
+  PetscCall(MatSetOption(body->P, MAT_SPD, PETSC_TRUE));
+  PetscCall(AbutBodySetNearNullSpace_Private(body, f.center, body->A));
+  if (f.n) PetscCall(AbutBodySetNearNullSpace_Private(body, f.center, body->P));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AbutBodyModesReset_Private(AbutBody body)
+{
+  PetscFunctionBegin;
+  PetscCall(MatNullSpaceDestroy(&body->free));
+  for (PetscInt k = 0; k < body->nmodes; ++k) PetscCall(VecDestroy(&body->mode[k]));
+  PetscCall(MatDestroy(&body->P));
+  body->nmodes = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutBodyGetFreeModes - The free rigid motions as vectors of the present mesh
+
+   Not Collective
+
+   Input Parameter:
+.  body - the body, set up
+
+   Output Parameters:
++  n     - how many, 0 to 3
+-  modes - [n] orthonormal vectors of the layout of `AbutBodyCreateVec()`, owned by the body, valid until its mesh adapts
+
+   Level: intermediate
+
+   Note:
+   They span the motions of `AbutBodyGetFreeMotion()`, and vanish at all prescribed unknowns.
+
+.seealso: `AbutBodyGetFreeModeCount()`, `AbutBodyMove()`, `AbutBodyGetImbalance()`
+@*/
+PetscErrorCode AbutBodyGetFreeModes(AbutBody body, PetscInt *n, const Vec *modes[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, ABUTBODY_CLASSID, 1);
+  PetscCall(AbutBodyNeedSetUp_Private(body));
+  *n     = body->nmodes;
+  *modes = body->mode;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutBodyMove - Moves a body along its free modes; stresses and forces stay
+
+   Collective
+
+   Input Parameters:
++  body - the body, set up
+-  a    - [n] how far along each vector of `AbutBodyGetFreeModes()`, the same on all ranks
+
+   Level: intermediate
+
+.seealso: `AbutBodyGetFreeModes()`, `AbutBodyUpdate()`
+@*/
+PetscErrorCode AbutBodyMove(AbutBody body, const PetscReal a[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, ABUTBODY_CLASSID, 1);
+  PetscCall(AbutBodyNeedSetUp_Private(body));
+  if (!body->nmodes) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecMAXPY(body->u, body->nmodes, a, body->mode));
+  PetscCall(AbutBodySpread_Private(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutBodyGetImbalance - What the forces on a body have along its free modes: resultants that nothing balances
+
+   Collective
+
+   Input Parameter:
+.  body - the body, set up
+
+   Output Parameter:
+.  r - [n] products of the tractions' and contact forces' nodal values, as they now act, with the vectors of `AbutBodyGetFreeModes()`
+
+   Level: intermediate
+
+.seealso: `AbutBodyGetFreeModes()`, `AbutBodySolve()`
+@*/
+PetscErrorCode AbutBodyGetImbalance(AbutBody body, PetscReal r[])
+{
+  PetscScalar of[2][ABUT_MAX_MODES];
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, ABUTBODY_CLASSID, 1);
+  PetscCall(AbutBodyNeedSetUp_Private(body));
+  if (!body->nmodes) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecMDot(body->load, body->nmodes, body->mode, of[0]));
+  PetscCall(VecMDot(body->contact, body->nmodes, body->mode, of[1]));
+  for (PetscInt k = 0; k < body->nmodes; ++k) r[k] = of[0][k] + of[1][k];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,114 @@
+#include <abut/private/bodyimpl.h> /*I "abutbody.h" I*/
+
+/* The linear solver of a body: by its size, unless the user chooses */
+
+/* Below this many unknowns a direct factor pays: it is used for every sweep, and takes 1 kB per unknown */
+#define ABUT_DIRECT_UNKNOWNS 1000000
+
+static PetscErrorCode AbutBodySetDirect_Private(AbutBody body)
+{
+  PC pc;
+
+  PetscFunctionBegin;
+  PetscCall(KSPGetPC(body->ksp, &pc));
+  PetscCall(KSPSetType(body->ksp, KSPPREONLY));
+  PetscCall(PCSetType(pc, PCCHOLESKY));
+  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutBodySetIterative_Private(AbutBody body)
+{
+  PC pc;
+
+  PetscFunctionBegin;
+  PetscCall(KSPGetPC(body->ksp, &pc));
+  PetscCall(KSPSetType(body->ksp, KSPCG));
+  PetscCall(KSPSetNormType(body->ksp, KSP_NORM_UNPRECONDITIONED));
+  PetscCall(KSPSetTolerances(body->ksp, 1e-10, PETSC_DEFAULT, PETSC_DEFAULT, 1000));
+  PetscCall(KSPSetInitialGuessNonzero(body->ksp, PETSC_TRUE)); /* the last sweep's displacement */
+  PetscCall(PCSetType(pc, PCHYPRE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whoever reads no options gets the direct factor */
+PetscErrorCode AbutBodyCreateSolver_Private(AbutBody body)
+{
+  PetscFunctionBegin;
+  PetscCall(KSPCreate(PetscObjectComm((PetscObject)body), &body->ksp));
+  PetscCall(KSPSetOptionsPrefix(body->ksp, ((PetscObject)body)->prefix));
+  PetscCall(AbutBodySetDirect_Private(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Multigrid keeps what belongs to its first matrix (BoomerAMG the numbering of the unknowns, GAMG the sizes of its levels) and goes astray
+   when a larger one follows: each mesh gets a new preconditioner. At our strong threshold BoomerAMG takes 8 iterations where hypre's own
+   0.25 takes 94. */
+static PetscErrorCode AbutBodyRenewPreconditioner_Private(AbutBody body)
+{
+  char      name[256], type[64];
+  PetscBool factor, given = PETSC_TRUE;
+  PCType    present;
+  PC        pc;
+
+  PetscFunctionBegin;
+  PetscCall(KSPGetPC(body->ksp, &pc));
+  PetscCall(PetscObjectTypeCompareAny((PetscObject)pc, &factor, PCCHOLESKY, PCLU, ""));
+  if (factor) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PCGetType(pc, &present));
+  PetscCall(PetscStrncpy(type, present, sizeof(type)));
+  PetscCall(PetscSNPrintf(name, sizeof(name), "-%spc_hypre_boomeramg_strong_threshold", ((PetscObject)body)->prefix));
+  if (!strcmp(type, PCHYPRE)) PetscCall(PetscOptionsHasName(NULL, NULL, name, &given));
+  if (!given) PetscCall(PetscOptionsSetValue(NULL, name, "0.5"));
+  PetscCall(PCSetType(pc, PCNONE));
+  PetscCall(PCSetType(pc, type));
+  PetscCall(PCSetFromOptions(pc));
+  if (!given) PetscCall(PetscOptionsClearValue(NULL, name));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* With the 20 per cent of spare workspace that are its default, MUMPS 5.7 returns NaN from some symmetric factors on 3 or 4 ranks, and no
+   error; with 35 it did not any more. A -mat_mumps_icntl_14 of the user comes later. */
+PetscErrorCode AbutBodyGiveFactorRoom_Private(AbutBody body)
+{
+  MatSolverType solver = NULL;
+  PetscBool     mumps;
+  PC            pc;
+  Mat           factor;
+
+  PetscFunctionBegin;
+  PetscCall(KSPGetPC(body->ksp, &pc));
+  PetscCall(PCFactorGetMatSolverType(pc, &solver));
+  PetscCall(PetscStrcmp(solver, MATSOLVERMUMPS, &mumps));
+  if (!mumps) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PCFactorSetUpMatSolverType(pc));
+  PetscCall(PCFactorGetMatrix(pc, &factor));
+  PetscCall(MatMumpsSetIcntl(factor, 14, 60));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Our defaults first, the user's options over them. Before the first mesh its size is not known, and taken as small. */
+PetscErrorCode AbutBodyChooseSolver_Private(AbutBody body, PetscInt n, PetscBool readoptions)
+{
+  const char *prefix     = ((PetscObject)body)->prefix;
+  char        pctype[64] = "";
+  PetscBool   haspc, hasksp, factor;
+  PC          pc;
+
+  PetscFunctionBegin;
+  if (readoptions || (!body->userksp && n > ABUT_DIRECT_UNKNOWNS)) {
+    PetscCall(PetscOptionsGetString(NULL, prefix, "-pc_type", pctype, sizeof(pctype), &haspc));
+    PetscCall(PetscOptionsHasName(NULL, prefix, "-ksp_type", &hasksp));
+    body->userksp = (PetscBool)(haspc || hasksp);
+    factor        = (PetscBool)(!haspc || !strcmp(pctype, PCCHOLESKY) || !strcmp(pctype, PCLU));
+    PetscCall((factor && n <= ABUT_DIRECT_UNKNOWNS ? AbutBodySetDirect_Private : AbutBodySetIterative_Private)(body));
+    PetscCall(KSPGetPC(body->ksp, &pc));
+    if (haspc) {
+      PetscCall(PCSetType(pc, pctype));
+      if (factor) PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+    }
+    PetscCall(KSPSetFromOptions(body->ksp));
+  }
+  PetscCall(AbutBodyRenewPreconditioner_Private(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

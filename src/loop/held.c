@@ -1,0 +1,241 @@
+#include <abut/private/loopimpl.h> /*I "abutloop.h" I*/
+
+/* Is every rigid motion that the prescribed displacements leave free resisted by contact? Contact has no friction, so it resists a motion
+   of the bodies only by its normal jump; along a straight side the jump is linear, so the ends of the part that two sides share say all. */
+
+/* One row per end of a pair's shared part, one column per free motion of a body: the normal displacements of both sides, added */
+typedef struct {
+  PetscInt   rows, columns;
+  PetscInt  *body, *mode; /* [columns] */
+  PetscReal *M;           /* [rows*columns] */
+} AbutJumps;
+
+static PetscErrorCode AbutJumpsCreate_Private(AbutInterface f, AbutJumps *j)
+{
+  PetscFunctionBegin;
+  j->rows    = 2 * f->npairs;
+  j->columns = 0;
+  for (PetscInt pass = 0; pass < 2; ++pass) {
+    if (pass) PetscCall(PetscMalloc2(j->columns, &j->body, j->columns, &j->mode));
+    j->columns = 0;
+    for (PetscInt b = 0; b < f->nbodies; ++b) {
+      PetscInt n;
+
+      PetscCall(AbutBodyGetFreeModeCount(f->body[b], &n));
+      for (PetscInt k = 0; k < n; ++k, ++j->columns) {
+        if (!pass) continue;
+        j->body[j->columns] = b;
+        j->mode[j->columns] = k;
+      }
+    }
+  }
+  PetscCall(PetscCalloc1(j->rows * j->columns, &j->M));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutJumpsDestroy_Private(AbutJumps *j)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree2(j->body, j->mode));
+  PetscCall(PetscFree(j->M));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The two ends of what the sides of a pair share, each seen from both sides: point[side][end] */
+static PetscErrorCode AbutPairShared_Private(AbutPair pair, PetscReal point[2][2][2], PetscReal normal[2][2])
+{
+  AbutBody  body[2];
+  PetscInt  side[2];
+  PetscReal ends[2][4], at[2][2], tangent[2], length, from = PETSC_MIN_REAL, to = PETSC_MAX_REAL;
+
+  PetscFunctionBegin;
+  PetscCall(AbutPairGetBodies(pair, body, side));
+  for (PetscInt s = 0; s < 2; ++s) {
+    AbutMesh mesh;
+
+    PetscCall(AbutBodyGetMesh(body[s], &mesh));
+    PetscCall(AbutMeshGetSideEnds(mesh, side[s], ends[s], normal[s]));
+  }
+  for (PetscInt d = 0; d < 2; ++d) tangent[d] = ends[0][2 + d] - ends[0][d];
+  length = PetscSqrtReal(tangent[0] * tangent[0] + tangent[1] * tangent[1]);
+  for (PetscInt s = 0; s < 2; ++s) {
+    for (PetscInt e = 0; e < 2; ++e) at[s][e] = (ends[s][2 * e] * tangent[0] + ends[s][2 * e + 1] * tangent[1]) / length;
+    from = PetscMax(from, PetscMin(at[s][0], at[s][1]));
+    to   = PetscMin(to, PetscMax(at[s][0], at[s][1]));
+  }
+  for (PetscInt s = 0; s < 2; ++s)
+    for (PetscInt e = 0; e < 2; ++e) {
+      const PetscReal z = ((e ? to : from) - at[s][0]) / (at[s][1] - at[s][0]);
+
+      for (PetscInt d = 0; d < 2; ++d) point[s][e][d] = (1. - z) * ends[s][d] + z * ends[s][2 + d];
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The motion at both corners of the body's box, by which a turn is known, and its size there: for a turn that of the box */
+static PetscErrorCode AbutMotionAtCorners_Private(AbutBody body, PetscInt mode, PetscReal u[2][2], PetscBool *turn, PetscReal *scale)
+{
+  AbutMesh  mesh;
+  PetscReal x[2][2];
+
+  PetscFunctionBegin;
+  PetscCall(AbutBodyGetMesh(body, &mesh));
+  PetscCall(AbutMeshGetBox(mesh, x[0], x[1]));
+  for (PetscInt e = 0; e < 2; ++e) PetscCall(AbutBodyGetFreeMotion(body, mode, x[e], u[e]));
+  *turn  = (PetscBool)(u[0][0] != u[1][0] || u[0][1] != u[1][1]);
+  *scale = *turn ? PetscMax(x[1][0] - x[0][0], x[1][1] - x[0][1]) : 1.;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutJumpsFill_Private(AbutInterface f, AbutJumps *j)
+{
+  PetscFunctionBegin;
+  for (PetscInt t = 0; t < 2 * f->npairs; ++t) {
+    PetscReal point[2][2][2], normal[2][2];
+
+    PetscCall(AbutPairShared_Private(f->pair[t / 2], point, normal));
+    for (PetscInt c = 0; c < j->columns; ++c) {
+      PetscReal corner[2][2], scale, u[2];
+      PetscBool turn;
+
+      if (j->body[c] != f->bodyof[t]) continue;
+      PetscCall(AbutMotionAtCorners_Private(f->body[j->body[c]], j->mode[c], corner, &turn, &scale));
+      for (PetscInt e = 0; e < 2; ++e) {
+        PetscCall(AbutBodyGetFreeMotion(f->body[j->body[c]], j->mode[c], point[t % 2][e], u));
+        j->M[(2 * (t / 2) + e) * j->columns + c] = (u[0] * normal[t % 2][0] + u[1] * normal[t % 2][1]) / scale;
+      }
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Gauss and Jordan, column by column: the first column that the ones before it make, or -1. used[c]: column c has a part in it. */
+static PetscErrorCode AbutJumpsFindFree_Private(AbutJumps *j, PetscInt *which, PetscBool used[])
+{
+  const PetscReal tol  = 1e-10;
+  PetscInt        rank = 0, *pivot;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(j->rows, &pivot)); /* of each row, its column */
+  *which = -1;
+  for (PetscInt c = 0; c < j->columns && *which < 0; ++c) {
+    PetscInt best = rank;
+
+    for (PetscInt r = rank; r < j->rows; ++r)
+      if (PetscAbsReal(j->M[r * j->columns + c]) > PetscAbsReal(j->M[best * j->columns + c])) best = r;
+    if (rank == j->rows || PetscAbsReal(j->M[best * j->columns + c]) <= tol) {
+      *which = c;
+      for (PetscInt r = 0; r < rank; ++r)
+        if (PetscAbsReal(j->M[r * j->columns + c]) > tol) used[pivot[r]] = PETSC_TRUE;
+      continue;
+    }
+    for (PetscInt k = 0; k < j->columns; ++k) {
+      const PetscReal swap = j->M[rank * j->columns + k];
+
+      j->M[rank * j->columns + k] = j->M[best * j->columns + k];
+      j->M[best * j->columns + k] = swap;
+    }
+    for (PetscInt k = j->columns - 1; k >= c; --k) j->M[rank * j->columns + k] /= j->M[rank * j->columns + c];
+    for (PetscInt r = 0; r < j->rows; ++r) {
+      const PetscReal l = j->M[r * j->columns + c];
+
+      if (r == rank || l == 0.) continue;
+      for (PetscInt k = c; k < j->columns; ++k) j->M[r * j->columns + k] -= l * j->M[rank * j->columns + k];
+    }
+    pivot[rank++] = c;
+  }
+  PetscCall(PetscFree(pivot));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A side and a component that would hold the body, none that is in contact if there is another: against a translation along d the sides
+   across it first, against a turn those across y */
+static PetscErrorCode AbutBodyFindSupport_Private(AbutBody body, PetscBool turn, PetscInt d, const char *side[], PetscInt *component)
+{
+  AbutMesh mesh;
+  PetscInt found = -1;
+
+  PetscFunctionBegin;
+  PetscCall(AbutBodyGetMesh(body, &mesh));
+  for (PetscInt k = 0; k < 4 && found < 0; ++k) {
+    const PetscInt    s = 2 * (k < 2 ? d : !d) + k % 2;
+    AbutConditionType type;
+
+    PetscCall(AbutBodyGetCondition(body, s, turn ? s / 2 : d, &type));
+    if (type == ABUT_TRACTION) found = s;
+  }
+  if (found < 0) found = 2 * d;
+  *component = turn ? found / 2 : d;
+  PetscCall(AbutMeshGetSideName(mesh, found, side));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutInterfaceComplain_Private(AbutInterface f, const AbutJumps *j, PetscInt which, const PetscBool used[],
+                                                    char text[], size_t len)
+{
+  AbutBody    body = f->body[j->body[which]];
+  const char *name, *other, *side;
+  char        with[256] = "";
+  PetscReal   u[2][2], scale;
+  PetscBool   turn;
+  PetscInt    d, component = 0, last = j->body[which];
+
+  PetscFunctionBegin;
+  PetscCall(AbutBodyGetName(body, &name));
+  PetscCall(AbutMotionAtCorners_Private(body, j->mode[which], u, &turn, &scale));
+  d = turn || u[0][0] == 0. ? 1 : 0;
+  for (PetscInt c = 0; c < which; ++c) {
+    if (!used[c] || j->body[c] == last || j->body[c] == j->body[which]) continue;
+    last = j->body[c];
+    PetscCall(AbutBodyGetName(f->body[last], &other));
+    PetscCall(PetscStrlcat(with, with[0] ? ", " : turn ? ", and " : ", nor ", sizeof(with)));
+    PetscCall(PetscStrlcat(with, other, sizeof(with)));
+  }
+  if (with[0]) PetscCall(PetscStrlcat(with, " with it", sizeof(with)));
+  PetscCall(AbutBodyFindSupport_Private(body, turn, d, &side, &component));
+  if (turn)
+    PetscCall(PetscSNPrintf(text, len,
+                            "%s: this body is free to turn%s; prescribe a displacement normal to a side of some length, for example "
+                            "%s_bc_%s_u%d: 0",
+                            name, with, name, side, (int)component + 1));
+  else
+    PetscCall(PetscSNPrintf(text, len,
+                            "%s: nothing holds this body along %s%s; prescribe u%d on one of its sides, for example %s_bc_%s_u%d: 0", name,
+                            d ? "y" : "x", with, (int)component + 1, name, side, (int)component + 1));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutInterfaceCheck - Ends the run if bodies can move rigidly against no prescribed displacement and no contact; needs no meshes yet
+
+   Collective
+
+   Input Parameter:
+.  iface - the map
+
+   Level: developer
+
+   Note:
+   What can hold a body may still fail to: contact only pushes, and may be open. That is found by solving.
+
+.seealso: `AbutBodyGetFreeModeCount()`, `AbutBodyCheck()`, `AbutPairCheck()`
+@*/
+PetscErrorCode AbutInterfaceCheck(AbutInterface iface)
+{
+  AbutJumps  j;
+  PetscInt   which;
+  PetscBool *used;
+  char       text[1024] = "";
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(iface, ABUTINTERFACE_CLASSID, 1);
+  PetscCall(AbutJumpsCreate_Private(iface, &j));
+  PetscCall(AbutJumpsFill_Private(iface, &j));
+  PetscCall(PetscCalloc1(j.columns, &used));
+  PetscCall(AbutJumpsFindFree_Private(&j, &which, used));
+  if (which >= 0) PetscCall(AbutInterfaceComplain_Private(iface, &j, which, used, text, sizeof(text)));
+  PetscCall(PetscFree(used));
+  PetscCall(AbutJumpsDestroy_Private(&j));
+  AbutCheckInput(!text[0], PetscObjectComm((PetscObject)iface), "%s", text);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

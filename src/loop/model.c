@@ -1,0 +1,179 @@
+#include <abut/private/loopimpl.h>
+
+/* The contact model of an interface: its nodes, the layers' compliance, the free motions of its bodies; and how it learns from sweeps */
+
+/* Contact nodes of all pairs, one after the other: those that carry a pressure */
+static PetscErrorCode AbutContactModelNodes_Private(AbutInterface f, AbutContactModel model)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc1(f->npairs + 1, &model->first));
+  for (PetscInt pass = 0; pass < 2; ++pass) {
+    PetscInt c = 0;
+
+    for (PetscInt i = 0; i < f->npairs; ++i) {
+      PetscInt         which, n;
+      const PetscReal *x, *D;
+      PetscReal        theta;
+
+      PetscCall(AbutPairGetPressureNodes(f->pair[i], &which, &n, &x, &D));
+      PetscCall(AbutPairGetTheta(f->pair[i], &theta));
+      for (PetscInt k = 0; k < n; ++k) {
+        if (D[k] <= 0.) continue;
+        if (pass) {
+          model->node[c] = k;
+          model->D[c]    = D[k];
+          model->soft[c] = theta / D[k];
+        }
+        ++c;
+      }
+      model->first[i + 1] = c;
+    }
+    model->n = c;
+    if (!pass) PetscCall(PetscMalloc6(c, &model->node, c, &model->D, c, &model->soft, c, &model->open, c, &model->b, c, &model->active));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Penetrations by a unit of each free motion, and the resultants of the loads that contact has to balance */
+static PetscErrorCode AbutContactModelMotions_Private(AbutInterface f, AbutContactModel model)
+{
+  PetscInt   all = f->offset[2 * f->npairs], m = 0;
+  PetscReal *trace;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < f->nbodies; ++b) {
+    PetscInt k;
+
+    PetscCall(AbutBodyGetFreeModeCount(f->body[b], &k));
+    model->m += k;
+  }
+  PetscCall(PetscMalloc4(model->m * model->n, &model->G, model->m, &model->e, model->m, &model->owner, model->m, &model->mode));
+  PetscCall(PetscMalloc1(all, &trace));
+  for (PetscInt b = 0; model->m && b < f->nbodies; ++b) {
+    const Vec *mode;
+    PetscInt   nmodes;
+    PetscReal  load[3];
+
+    PetscCall(AbutBodyGetFreeModes(f->body[b], &nmodes, &mode));
+    PetscCall(AbutBodyGetImbalance(f->body[b], load));
+    for (PetscInt k = 0; k < nmodes; ++k, ++m) {
+      PetscReal *G = model->G + m * model->n;
+
+      PetscCall(PetscArrayzero(trace, all));
+      for (PetscInt t = 0; t < 2 * f->npairs; ++t) {
+        AbutBody bodies[2];
+        PetscInt sides[2];
+
+        PetscCall(AbutPairGetBodies(f->pair[t / 2], bodies, sides));
+        if (f->bodyof[t] == b) PetscCall(AbutBodyGetSideTrace(bodies[t % 2], sides[t % 2], mode[k], trace + f->offset[t]));
+      }
+      PetscCall(AbutInterfacePenetration_Private(f, model, trace, G));
+      for (PetscInt c = 0; c < model->n; ++c) G[c] -= model->open[c];
+      model->e[m]     = load[k];
+      model->owner[m] = b;
+      model->mode[m]  = k;
+    }
+  }
+  PetscCall(PetscFree(trace));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutContactModelOpen_Private(AbutInterface f, AbutContactModel model)
+{
+  PetscReal *trace;
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc1(f->offset[2 * f->npairs], &trace));
+  PetscCall(AbutInterfacePenetration_Private(f, model, trace, model->open));
+  PetscCall(PetscFree(trace));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The model of the present meshes */
+PetscErrorCode AbutInterfaceGetModel_Private(AbutInterface f, AbutContactModel *model)
+{
+  PetscFunctionBegin;
+  if (!f->model) {
+    PetscCall(PetscNew(&f->model));
+    PetscCall(AbutContactModelNodes_Private(f, f->model));
+    PetscCall(AbutContactModelOpen_Private(f, f->model));
+    PetscCall(PetscCalloc1(f->model->n * f->model->n, &f->model->S));
+    PetscCall(AbutInterfaceLayers_Private(f, f->model));
+    PetscCall(AbutContactModelMotions_Private(f, f->model));
+    PetscCall(PetscMalloc2(f->model->n * f->model->n, &f->model->factor, f->model->n * (f->model->m + 1), &f->model->X));
+  }
+  *model = f->model;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AbutContactModelDestroy_Private(AbutContactModel *model)
+{
+  PetscFunctionBegin;
+  if (!*model) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree((*model)->first));
+  PetscCall(PetscFree6((*model)->node, (*model)->D, (*model)->soft, (*model)->open, (*model)->b, (*model)->active));
+  PetscCall(PetscFree((*model)->S));
+  PetscCall(PetscFree4((*model)->G, (*model)->e, (*model)->owner, (*model)->mode));
+  PetscCall(PetscFree2((*model)->factor, (*model)->X));
+  PetscCall(PetscFree(*model));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Traces -> penetrations of the contact nodes of all pairs, length */
+PetscErrorCode AbutInterfacePenetration_Private(AbutInterface f, AbutContactModel model, const PetscReal trace[], PetscReal g[])
+{
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < f->npairs; ++i) {
+    PetscInt         which, n;
+    const PetscReal *x, *D;
+    PetscReal       *nodal;
+
+    PetscCall(AbutPairGetPressureNodes(f->pair[i], &which, &n, &x, &D));
+    PetscCall(PetscMalloc1(n, &nodal));
+    PetscCall(AbutPairComputePenetration(f->pair[i], trace + f->offset[2 * i], trace + f->offset[2 * i + 1], nodal));
+    for (PetscInt c = model->first[i]; c < model->first[i + 1]; ++c) g[c] = nodal[model->node[c]];
+    PetscCall(PetscFree(nodal));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* q = S d by one solve of every body with the forces d of the contact nodes alone: force[b] are the nodal forces, w[b] the displacements. The bodies' own
+   displacements stay. */
+PetscErrorCode AbutInterfaceComply_Private(AbutInterface f, AbutContactModel model, const PetscReal d[], Vec force[], Vec w[], PetscReal q[])
+{
+  PetscReal *trace, **p;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc2(f->offset[2 * f->npairs], &trace, f->npairs, &p));
+  for (PetscInt i = 0; i < f->npairs; ++i) {
+    PetscCall(PetscCalloc1(f->offset[2 * i + 2] - f->offset[2 * i], &p[i]));
+    for (PetscInt c = model->first[i]; c < model->first[i + 1]; ++c) p[i][model->node[c]] = d[c] / model->D[c];
+  }
+  PetscCall(AbutInterfaceIncrement_Private(f, p, force, w, trace));
+  PetscCall(AbutInterfacePenetration_Private(f, model, trace, q));
+  for (PetscInt c = 0; c < model->n; ++c) q[c] = model->open[c] - q[c];
+  for (PetscInt i = 0; i < f->npairs; ++i) PetscCall(PetscFree(p[i]));
+  PetscCall(PetscFree2(trace, p));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A sweep has shown that forces d give way by q. The BFGS formula makes S agree with it and keeps what earlier sweeps taught; on a standing contact zone, with
+   the step lengths of ddactive, the directions that follow are those of conjugate gradients preconditioned by the first S (Nazareth, SIAM J. Numer. Anal. 16,
+   1979). */
+PetscErrorCode AbutContactModelLearn_Private(AbutContactModel model, const PetscReal d[], const PetscReal q[])
+{
+  const PetscInt n  = model->n;
+  PetscReal     *Sd = model->b, dSd = 0., dq = 0.;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < n; ++i) {
+    Sd[i] = 0.;
+    for (PetscInt j = 0; j < n; ++j) Sd[i] += model->S[i * n + j] * d[j];
+    dSd += d[i] * Sd[i];
+    dq += d[i] * q[i];
+  }
+  if (dSd <= 0. || dq <= 0.) PetscFunctionReturn(PETSC_SUCCESS); /* a direction below round-off teaches nothing */
+  for (PetscInt i = 0; i < n; ++i)
+    for (PetscInt j = 0; j < n; ++j) model->S[i * n + j] += q[i] * q[j] / dq - Sd[i] * Sd[j] / dSd;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

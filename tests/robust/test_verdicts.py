@@ -1,0 +1,82 @@
+"""Every way in which a loop can fail has its name, exit status 2, and leaves its best answer. Two layers, h = 1/n; see test_gamma.py."""
+import csv, math, os, tempfile
+
+from abut import run
+from test_gamma import NPC, exact_force, layers, near
+
+
+def fails(verdict, scene, *options, ranks=1):
+    """Exit status 2; the name on both channels; nothing on standard error; finite numbers in the record and in the profile"""
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "profile.csv")
+        record = run(None, scene, *options, f"-output_profile {path}", ranks=ranks, expect=2)
+        with open(path) as f:
+            profile = [row[name] for row in csv.DictReader(f) for name in ("u_n", "pressure") if row[name]]
+    print(*options, record["verdict"], record["sweeps"])
+    assert str(record.pop("verdict")) == verdict, options  # nan reads as a number
+    assert record.stdout.splitlines()[-1].startswith(f"verdict: {verdict}"), record.stdout
+    assert ranks > 1 or not record.stderr, record.stderr
+    assert all(isinstance(value, str) and value not in ("nan", "inf") or math.isfinite(value) for value in record.values()), dict(record)
+    assert profile and all(math.isfinite(float(value)) for value in profile)
+    return record
+
+
+def test_oscillation():
+    record = fails("oscillation", layers(8), "-snes_type ddneumann", "-snes_ddneumann_gamma 0.06")
+    assert record["sweeps"] <= 200 and near(record["pair.mid.force"], exact_force(layers(8)), 0.2)
+    fails("oscillation", layers(8), "-snes_type ddneumann", "-snes_ddneumann_gamma 0.06", ranks=2)
+
+
+INEXACT = "-lower_pc_type hypre -upper_pc_type hypre -lower_ksp_rtol {0} -upper_ksp_rtol {0}"
+LOOPS = "-snes_type ddactive", "-snes_type ddneumann", "-snes_type anderson", f"-snes_type anderson {NPC}", f"-snes_type ngmres {NPC}"
+
+
+def test_stagnation_where_bodies_are_solved_to_1e_3_and_the_loop_is_to_reach_1e_8():
+    """A body's solver starts from its last displacement and is content with it: traces stand still, the residual alone sees convergence"""
+    scene = layers(8)
+    exact = exact_force(scene)
+    for loop in LOOPS:
+        record = fails("stagnation", scene, loop, INEXACT.format(1e-3))
+        assert near(record["pair.mid.force"], exact, 0.05), (loop, record["pair.mid.force"])
+
+
+def test_stagnation_where_bodies_are_solved_to_1e_5_and_mixing_keeps_the_noise():
+    fails("stagnation", layers(8), f"-snes_type qn {NPC}", INEXACT.format(1e-5))
+
+
+def test_no_stagnation_where_bodies_are_solved_to_1e_10():
+    scene = layers(8)
+    exact = exact_force(scene)
+    for loop in LOOPS:
+        record = run(None, scene, loop, INEXACT.format(1e-10))
+        assert record["verdict"] == "converged" and near(record["pair.mid.force"], exact, 1e-6), loop
+
+
+def test_no_stagnation_where_a_body_only_moves():
+    """Its energy is zero, and the errors of its solver are not"""
+    for loop in LOOPS:
+        record = run(None, layers(4, closure="1e-3"), loop, INEXACT.format(1e-10))
+        assert record["verdict"] == "converged" and record["pair.mid.force"] == 0, loop
+
+
+def test_divergence():
+    fails("diverged", layers(8), "-snes_type ddneumann", "-snes_ddneumann_gamma 3")
+    record = fails("diverged", layers(8), "-snes_type ddneumann", "-snes_ddneumann_gamma 0.5 -snes_divergence_tolerance 2")
+    assert record["sweeps"] < 20
+
+
+def test_nan():
+    fails("nan", layers(8), "-snes_type ddneumann", "-snes_ddneumann_gamma 1e200")
+
+
+def test_max_iterations():
+    for loop, sweeps in zip(LOOPS, (3, 4, 4, 4, None)):
+        record = fails("max_iterations", layers(8, 0.005), loop, "-snes_max_it 3 -snes_rtol 1e-14")
+        assert sweeps is None or abs(record["sweeps"] - sweeps) <= 1, (loop, record["sweeps"])
+
+
+def test_a_linear_solver_that_may_take_1_iteration_in_one_body():
+    for body in "lower", "upper":
+        for loop in LOOPS:
+            fails("linear_solver", layers(4), loop, f"-{body}_pc_type jacobi -{body}_ksp_type cg -{body}_ksp_max_it 1")
+    fails("linear_solver", layers(4), LOOPS[1], "-lower_pc_type jacobi -lower_ksp_type cg -lower_ksp_max_it 1", ranks=2)
