@@ -9,7 +9,8 @@
    Level: beginner
 
    Notes:
-   Linear isotropic elasticity, eqs. (1)-(6) of the paper, on cells of order 1. Its options carry its name: `-lower_mesh_box`, `-lower_ksp_type`.
+   Linear isotropic elasticity, eqs. (1)-(6) of the paper, on cells of order 1. Its options carry its name: `-lower_mesh_box`,
+   `-lower_ksp_type`.
 
 .seealso: `AbutBodyCreate()`, `AbutBodySolve()`, `AbutMesh`, `AbutPair`, `AbutEstimator`
 S*/
@@ -71,8 +72,8 @@ PETSC_EXTERN PetscErrorCode AbutBodyGetCellPoint(AbutBody, PetscInt, const Petsc
 PETSC_EXTERN PetscErrorCode AbutBodyGetPointValues(AbutBody, const PetscReal[2], PetscReal[7]);
 PETSC_EXTERN PetscErrorCode AbutVonMises(const PetscReal[3], PetscReal, PetscReal *);
 
-/* One side of a body as an ordered list of nodes, the same on all ranks.
-   Nodes follow the boundary with the body on the left; a node of a side always carries unknowns (hanging ones never lie on the boundary). */
+/* One side of a body as an ordered list of nodes, the same on all ranks. Nodes follow the boundary with the body on the left; a node of
+   a side always carries unknowns (hanging ones never lie on the boundary). */
 typedef struct {
   PetscInt   n;      /* nodes; element i joins node i and i+1 */
   PetscReal *x;      /* [2*n] coordinates */

@@ -9,8 +9,9 @@
    Level: intermediate
 
    Notes:
-   The trace x holds u_n1 and u_n2 of every pair, each value on the rank that owns the node. A sweep turns x into pressures, solves every body once with
-   them, and returns the new traces G(x). The nonlinear function of the loop is F(x) = x - G(x); G(x) is kept until x changes.
+   The trace x holds u_n1 and u_n2 of every pair, each value on the rank that owns the node. A sweep turns x into pressures, solves every
+   body once with them, and returns the new traces G(x). The nonlinear function of the loop is F(x) = x - G(x); G(x) is kept until x
+   changes.
 
 .seealso: `AbutInterfaceCreate()`, `AbutInterfaceSetSNES()`, `SNESDDNEUMANN`
 S*/

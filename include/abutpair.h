@@ -8,22 +8,23 @@
    Level: intermediate
 
    Notes:
-   Contact conditions (7)-(10) of the paper in the penalty form (15)-(16): p = max(0, u_n1 + u_n2 - f)/theta. Pressures are nodal values on one of
-   the sides (`-mid_pair_pressure_side`), tested with the biorthogonal (dual) basis; all integrals are taken on the common refinement of both sides.
+   Contact conditions (7)-(10) of the paper in the penalty form (15)-(16): p = max(0, u_n1 + u_n2 - f)/theta. Pressures are nodal values on
+   one of the sides (`-mid_pair_pressure_side`), tested with the biorthogonal (dual) basis; all integrals are taken on the common refinement
+   of both sides.
 
 .seealso: `AbutPairCreate()`, `AbutBody`, `AbutInterface`
 S*/
 typedef struct _p_AbutPair *AbutPair;
 
-/* The state of a pair for given traces; the same on all ranks. Forces per unit thickness (stress times length), lengths in the scene's unit */
+/* The state of a pair for given traces; the same on all ranks. Forces per unit thickness (stress times length), lengths in the scene's
+   unit */
 typedef struct {
   PetscReal force; /* integral of p */
   PetscReal pressure_max, pressure_min;
   PetscReal contact_length;  /* sum of the nodal lengths D_i over active nodes */
-  PetscReal contact_edge;    /* where the penetration changes sign, or in exact contact the gap opens, from the closed end of the shared part; else half the
-                                contact's width */
+  PetscReal contact_edge;    /* from the closed end of the shared part, else half the contact's width: see AbutPairGetState() */
   PetscReal penetration_max; /* of the averaged nodal penetration */
-  PetscReal complementarity; /* max_i p_i*|p_i*theta - penetration_i| over the largest pressure times what two layers and theta give under it */
+  PetscReal complementarity; /* largest p_i*|p_i*theta - penetration_i| over p_max times what two layers and theta give under p_max */
   PetscReal balance;         /* |sum of forces on both sides| / force */
   PetscReal energy;          /* J_theta, eq. (15) */
   PetscInt  active, nodes;
@@ -43,7 +44,8 @@ PETSC_EXTERN PetscErrorCode AbutPairGetTheta(AbutPair, PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutPairGetCompliance(AbutPair, PetscReal[2]);
 PETSC_EXTERN PetscErrorCode AbutPairGetSizes(AbutPair, PetscInt[2]);
 
-/* Traces u_n1, u_n2 at the nodes of the two sides (as ordered in AbutSide) -> nodal pressures; nodal pressures -> nodal normal forces on both sides */
+/* Traces u_n1, u_n2 at the nodes of the two sides (as ordered in AbutSide) -> nodal pressures; nodal pressures -> nodal normal forces on
+   both sides */
 PETSC_EXTERN PetscErrorCode AbutPairComputePenetration(AbutPair, const PetscReal[], const PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutPairComputePressure(AbutPair, const PetscReal[], const PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutPairComputeForce(AbutPair, const PetscReal[], PetscReal[], PetscReal[]);

@@ -1,11 +1,10 @@
 #include "fembemimpl.h"
 
-/*
-   Outer integral of one pair of elements; the inner one is exact. Near pairs: Gauss's rule with 8 points after s = x^3 (10 - 15 x + 6 x^2),
-   which takes the logarithms out of the ends (a patch test is met to 4e-6, a smooth problem to 1e-4 of its discretisation error).
-   The further away the inner element, the fewer points of the plain rule give the same; a much smaller one nearby has the outer one halved.
-   On a regular mesh distances and lengths are often equal to these limits: FEMBEM_SLACK keeps round-off, and so the unit of length, from deciding.
-*/
+/* Outer integral of one pair of elements; the inner one is exact. Near pairs: Gauss's rule with 8 points after s = x^3 (10 - 15 x + 6
+   x^2), which takes the logarithms out of the ends (a patch test is met to 4e-6, a smooth problem to 1e-4 of its discretisation error).
+   The further away the inner element, the fewer points of the plain rule give the same; a much smaller one nearby has the outer one
+   halved. On a regular mesh distances and lengths are often equal to these limits: FEMBEM_SLACK keeps round-off, and so the unit of
+   length, from deciding. */
 typedef struct {
   PetscReal from; /* smallest distance of the inner element, in lengths of the outer one */
   PetscInt  n;

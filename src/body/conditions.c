@@ -16,7 +16,8 @@ static PetscErrorCode AbutBodySetCondition_Private(AbutBody body, PetscInt side,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The keys bc_SIDE_u1, bc_SIDE_u2, bc_SIDE_t1, bc_SIDE_t2 of every side; twice is one that says again, and otherwise, what another has said */
+/* The keys bc_SIDE_u1, bc_SIDE_u2, bc_SIDE_t1, bc_SIDE_t2 of every side; twice is one that says again, and otherwise, what another has
+   said */
 PetscErrorCode AbutBodySetConditionsFromOptions_Private(AbutBody body, AbutOptionItems PetscOptionsObject, char twice[], size_t len)
 {
   PetscInt nsides;
@@ -159,8 +160,8 @@ PetscErrorCode AbutBodyGetCondition(AbutBody body, PetscInt side, PetscInt compo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Moments of a prescribed traction against the two hat functions of an element side. The substitution s = z^3(10-15z+6z^2) crowds the points at the
-   ends, where a pressure may have a root or a kink; polynomials up to degree 4 are still integrated exactly. */
+/* Moments of a prescribed traction against the two hat functions of an element side. The substitution s = z^3(10-15z+6z^2) crowds the
+   points at the ends, where a pressure may have a root or a kink; polynomials up to degree 4 are still integrated exactly. */
 PetscErrorCode AbutBodyEdgeMoments_Private(AbutBody body, PetscInt side, PetscInt component, const PetscReal a[2], const PetscReal b[2],
                                            PetscReal m[2])
 {
@@ -206,7 +207,8 @@ static PetscErrorCode AbutBodyLoad_Private(AbutBody body, const AbutMeshTopology
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The prescribed unknowns owned by this rank, found on the gathered boundary, so that a rank that owns a node without having its cell knows them too */
+/* The prescribed unknowns owned by this rank, found on the gathered boundary, so that a rank that owns a node without having its cell
+   knows them too */
 PetscErrorCode AbutBodyConditionsSetUp_Private(AbutBody body)
 {
   const AbutMeshTopology *t;
@@ -264,7 +266,8 @@ PetscErrorCode AbutBodyConditionsSetUp_Private(AbutBody body)
    Level: developer
 
    Note:
-   Looks at some points of each side. A traction may be infinite at an end. Whether anything holds the body is asked by `AbutInterfaceCheck()`.
+   Looks at some points of each side. A traction may be infinite at an end. Whether anything holds the body is asked by
+   `AbutInterfaceCheck()`.
 
 .seealso: `AbutBodySetUp()`, `AbutPairCheck()`, `AbutInterfaceCheck()`
 @*/
@@ -320,7 +323,8 @@ PetscErrorCode AbutBodyGetFarSide(AbutBody body, const PetscReal normal[2], Pets
 }
 
 /*@
-   AbutBodyGetSupportDisplacement - The prescribed normal displacement on the far side of a body, opposite to a point: the base of a Winkler layer
+   AbutBodyGetSupportDisplacement - The prescribed normal displacement on the far side of a body, opposite to a point: the base of a Winkler
+   layer
 
    Not Collective
 

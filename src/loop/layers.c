@@ -1,10 +1,11 @@
 #include <abut/private/loopimpl.h>
 #include <petscblaslapack.h>
 
-/* The compliance of the bodies as if each were an elastic layer between its contact side and the side opposite to it: closed forms for a pressure cos(xi x).
-   It replaces no solve; it predicts the contact zone and preconditions, and what it misses the sweeps correct. */
+/* The compliance of the bodies as if each were an elastic layer between its contact side and the side opposite to it: closed forms for a
+   pressure cos(xi x). It replaces no solve; it predicts the contact zone and preconditions, and what it misses the sweeps correct. */
 
-/* The modes of side t = 2*pair+side: K v = xi^2 D v on its nodes, with the one-dimensional stiffness K, natural ends, lumped lengths D and V'DV = I */
+/* The modes of side t = 2*pair+side: K v = xi^2 D v on its nodes, with the one-dimensional stiffness K, natural ends, lumped lengths D
+   and V'DV = I */
 typedef struct {
   PetscInt   n;     /* modes: nodes of the side whose normal displacement is not prescribed */
   PetscInt   first; /* first contact node of the pair, and how many */
@@ -14,8 +15,8 @@ typedef struct {
   PetscReal  length;
 } AbutModes;
 
-/* Eigenvectors by columns V of a symmetric tridiagonal matrix, diagonal d and beside it e. LAPACK's fast way (n^2 operations) now and then gives up on strongly
-   graded sides; then its slow one (n^3) is taken. */
+/* Eigenvectors by columns V of a symmetric tridiagonal matrix, diagonal d and beside it e. LAPACK's fast way (n^2 operations) now and
+   then gives up on strongly graded sides; then its slow one (n^3) is taken. */
 static PetscErrorCode AbutModesTridiagonal_Private(PetscInt n, PetscReal d[], PetscReal e[], PetscReal xi[], PetscReal V[])
 {
   PetscBLASInt bn, found, one = 1, info, lwork, liwork, *iwork, *support;
@@ -28,8 +29,8 @@ static PetscErrorCode AbutModesTridiagonal_Private(PetscInt n, PetscReal d[], Pe
   PetscCall(PetscMalloc6(lwork, &work, liwork, &iwork, 2 * n, &support, n, &value, n, &d2, n, &e2));
   PetscCall(PetscArraycpy(d2, d, n));
   PetscCall(PetscArraycpy(e2, e, n));
-  PetscCallBLAS("LAPACKstegr", LAPACKstegr_("V", "A", &bn, d, e, &zero, &zero, &one, &one, &zero, &found, value, V, &bn, support, work, &lwork,
-                                            iwork, &liwork, &info));
+  PetscCallBLAS("LAPACKstegr", LAPACKstegr_("V", "A", &bn, d, e, &zero, &zero, &one, &one, &zero, &found, value, V, &bn, support, work,
+                                            &lwork, iwork, &liwork, &info));
   if (info || found != bn) {
     PetscCallBLAS("LAPACKsteqr", LAPACKsteqr_("I", &bn, d2, e2, V, &bn, work, &info));
     PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK steqr failed with info %d", (int)info);
@@ -48,7 +49,7 @@ static PetscReal AbutSideElement_Private(const AbutSide *s, PetscInt i)
 /* Modes at the nodes of a side that may move, 0 at the others; positive at the lower end, so that those of opposite sides match */
 static PetscErrorCode AbutModesOfSide_Private(const AbutSide *s, AbutModes *m, PetscReal *shape[])
 {
-  const PetscInt  end  = 2 * (s->n - 1), axis = PetscAbsReal(s->x[end + 1] - s->x[1]) > PetscAbsReal(s->x[end] - s->x[0]) ? 1 : 0;
+  const PetscInt  end = 2 * (s->n - 1), axis = PetscAbsReal(s->x[end + 1] - s->x[1]) > PetscAbsReal(s->x[end] - s->x[0]) ? 1 : 0;
   const PetscBool rise = (PetscBool)(s->x[axis] < s->x[end + axis]);
   PetscReal      *D, *d, *e, *V;
   PetscInt       *node;
@@ -90,10 +91,10 @@ static PetscErrorCode AbutModesOfSide_Private(const AbutSide *s, AbutModes *m, P
 /* The modes of side t, as penetrations of its pair's contact nodes */
 static PetscErrorCode AbutModesCreate_Private(AbutInterface f, AbutContactModel model, PetscInt t, AbutModes *m)
 {
-  const PetscInt  pair = t / 2, first = model->first[pair];
-  AbutBody        bodies[2];
-  PetscInt        sides[2], which, n;
-  const AbutSide *side;
+  const PetscInt   pair = t / 2, first = model->first[pair];
+  AbutBody         bodies[2];
+  PetscInt         sides[2], which, n;
+  const AbutSide  *side;
   const PetscReal *x, *D;
   PetscReal       *shape, *trace, *g;
 
@@ -124,8 +125,9 @@ static PetscErrorCode AbutModesDestroy_Private(AbutModes *m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How far each face of a layer of half height h gives way, smooth faces, equal pressures cos(xi x) on both: k/xi 2 sinh^2 s/(sinh 2s + 2s), s = xi h. By
-   symmetry also a layer of height h on a smooth rigid base. k = 2(1-nu^2)/E; xi -> 0: k h/2; xi -> infinity: k/xi, the half plane. */
+/* How far each face of a layer of half height h gives way, smooth faces, equal pressures cos(xi x) on both: k/xi 2 sinh^2 s/(sinh 2s +
+   2s), s = xi h. By symmetry also a layer of height h on a smooth rigid base. k = 2(1-nu^2)/E; xi -> 0: k h/2; xi -> infinity: k/xi, the
+   half plane. */
 static PetscReal AbutLayerSqueeze_Private(PetscReal k, PetscReal xi, PetscReal h)
 {
   const PetscReal s = xi * h;
@@ -167,8 +169,9 @@ static PetscErrorCode AbutLayerAdd_Private(AbutContactModel model, const AbutMod
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How the contact on side t gives way under the contact on side r of the same body: itself or another one on the same side, or one on the opposite side. A
-   layer that is held on its far side only gets thinner; one that is not also bends, and its faces act on each other, mode by mode. */
+/* How the contact on side t gives way under the contact on side r of the same body: itself or another one on the same side, or one on
+   the opposite side. A layer that is held on its far side only gets thinner; one that is not also bends, and its faces act on each
+   other, mode by mode. */
 static PetscErrorCode AbutLayerSides_Private(AbutInterface f, AbutContactModel model, PetscInt t, PetscInt r, const AbutModes m[])
 {
   AbutConditionType condition;
@@ -191,7 +194,8 @@ static PetscErrorCode AbutLayerSides_Private(AbutInterface f, AbutContactModel m
     const PetscReal compliance = 2. * (1. - poisson * poisson) / young;
     const PetscReal xi         = k < m[r].n ? 0.5 * (m[t].xi[k] + m[r].xi[k]) : m[t].xi[k];
     const PetscReal squeeze    = AbutLayerSqueeze_Private(compliance, xi, 0.5 * height);
-    const PetscReal bend       = AbutLayerBend_Private(compliance, PetscMax(xi, 0.5 * PETSC_PI / m[t].length), 0.5 * height); /* moving resists nothing */
+    const PetscReal bend       = AbutLayerBend_Private(compliance, PetscMax(xi, 0.5 * PETSC_PI / m[t].length),
+                                                       0.5 * height); /* moving resists nothing */
 
     if (condition == ABUT_DISPLACEMENT) w[k] = AbutLayerSqueeze_Private(compliance, xi, height);
     else w[k] = 0.5 * (othersides[r % 2] == far ? squeeze - bend : squeeze + bend);

@@ -137,9 +137,10 @@ PetscErrorCode AbutInterfacePenetration_Private(AbutInterface f, AbutContactMode
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* q = S d by one solve of every body with the forces d of the contact nodes alone: force[b] are the nodal forces, w[b] the displacements. The bodies' own
-   displacements stay. */
-PetscErrorCode AbutInterfaceComply_Private(AbutInterface f, AbutContactModel model, const PetscReal d[], Vec force[], Vec w[], PetscReal q[])
+/* q = S d by one solve of every body with the forces d of the contact nodes alone: force[b] are the nodal forces, w[b] the
+   displacements. The bodies' own displacements stay. */
+PetscErrorCode AbutInterfaceComply_Private(AbutInterface f, AbutContactModel model, const PetscReal d[], Vec force[], Vec w[],
+                                           PetscReal q[])
 {
   PetscReal *trace, **p;
 
@@ -157,9 +158,9 @@ PetscErrorCode AbutInterfaceComply_Private(AbutInterface f, AbutContactModel mod
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A sweep has shown that forces d give way by q. The BFGS formula makes S agree with it and keeps what earlier sweeps taught; on a standing contact zone, with
-   the step lengths of ddactive, the directions that follow are those of conjugate gradients preconditioned by the first S (Nazareth, SIAM J. Numer. Anal. 16,
-   1979). */
+/* A sweep has shown that forces d give way by q. The BFGS formula makes S agree with it and keeps what earlier sweeps taught; on a
+   standing contact zone, with the step lengths of ddactive, the directions that follow are those of conjugate gradients preconditioned
+   by the first S (Nazareth, SIAM J. Numer. Anal. 16, 1979). */
 PetscErrorCode AbutContactModelLearn_Private(AbutContactModel model, const PetscReal d[], const PetscReal q[])
 {
   const PetscInt n  = model->n;

@@ -28,7 +28,8 @@ static PetscErrorCode AbutContactModelActive_Private(AbutContactModel model, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Free motions a that balance the loads: (G'X_G) a = e - G'X_b. *loose is a motion that the active nodes do not resist, -1 if there is none. */
+/* Free motions a that balance the loads: (G'X_G) a = e - G'X_b. *loose is a motion that the active nodes do not resist, -1 if there is
+   none. */
 static PetscErrorCode AbutContactModelBalance_Private(AbutContactModel model, PetscInt na, PetscReal a[], PetscInt *loose)
 {
   const PetscInt m = model->m;
@@ -69,9 +70,10 @@ static PetscErrorCode AbutContactModelBalance_Private(AbutContactModel model, Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Forces and motions when the nodes of zone are closed and all others open; and what contradicts this: g[i] > 0 where an open node penetrates, F[i] < 0 */
-static PetscErrorCode AbutContactModelZone_Private(AbutContactModel model, const PetscBool zone[], PetscReal F[], PetscReal g[], PetscReal a[],
-                                                   PetscInt *loose)
+/* Forces and motions when the nodes of zone are closed and all others open; and what contradicts this: g[i] > 0 where an open node
+   penetrates, F[i] < 0 */
+static PetscErrorCode AbutContactModelZone_Private(AbutContactModel model, const PetscBool zone[], PetscReal F[], PetscReal g[],
+                                                   PetscReal a[], PetscInt *loose)
 {
   const PetscInt n = model->n, m = model->m;
   PetscInt       na = 0;
@@ -99,10 +101,11 @@ static PetscErrorCode AbutContactModelZone_Private(AbutContactModel model, const
 
 #define ABUT_PATIENCE 10
 
-/* Changes the zone where it is contradicted: closed nodes stay while F > 0, open nodes close when g > 0. All of them at once, and one at a time when that has
-   not made the contradictions fewer for a while: so it ends (Judice and Pires, Comput. Oper. Res. 21, 1994). Returns how many there were. */
-static PetscInt AbutContactModelExchange_Private(AbutContactModel model, const PetscReal F[], const PetscReal g[], PetscInt *least, PetscInt *patience,
-                                                 PetscBool zone[])
+/* Changes the zone where it is contradicted: closed nodes stay while F > 0, open nodes close when g > 0. All of them at once, and one at
+   a time when that has not made the contradictions fewer for a while: so it ends (Judice and Pires, Comput. Oper. Res. 21, 1994).
+   Returns how many there were. */
+static PetscInt AbutContactModelExchange_Private(AbutContactModel model, const PetscReal F[], const PetscReal g[], PetscInt *least,
+                                                 PetscInt *patience, PetscBool zone[])
 {
   PetscReal largest[2] = {0., 0.};
   PetscInt  wrong = 0, last = -1;

@@ -97,7 +97,8 @@ static PetscErrorCode AbutSpectrumMult_Private(Mat A, Vec v, Vec y)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* An even pressure, which is the mode of layers, and a little of everything else: a symmetric start would never find an antisymmetric mode */
+/* An even pressure, which is the mode of layers, and a little of everything else: a symmetric start would never find an antisymmetric
+   mode */
 static PetscErrorCode AbutSpectrumStart_Private(const AbutSpectrum *s, Vec v)
 {
   PetscScalar *a;

@@ -17,8 +17,7 @@ PetscErrorCode AbutInterfaceForces_Private(AbutInterface f, PetscReal *const p[]
     PetscCall(PetscMalloc1(o[2] - o[0], &nodal));
     PetscCall(AbutPairComputeForce(f->pair[i], p[i], nodal, nodal + o[1] - o[0]));
     for (PetscInt k = 0; k < o[2] - o[0]; ++k) nodal[k] = -nodal[k]; /* a pressure pushes against the outward normal */
-    for (PetscInt s = 0; s < 2; ++s)
-      PetscCall(AbutBodyAddSideForce(bodies[s], sides[s], nodal + o[s] - o[0], force[f->bodyof[2 * i + s]]));
+    for (PetscInt s = 0; s < 2; ++s) PetscCall(AbutBodyAddSideForce(bodies[s], sides[s], nodal + o[s] - o[0], force[f->bodyof[2 * i + s]]));
     PetscCall(PetscFree(nodal));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -65,7 +64,8 @@ PetscErrorCode AbutInterfaceSolveBodies_Private(AbutInterface f)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One sweep with more pressures alone, zero prescribed displacements and no loads: what it adds to the traces; the bodies stay as they are */
+/* One sweep with more pressures alone, zero prescribed displacements and no loads: what it adds to the traces; the bodies stay as they
+   are */
 PetscErrorCode AbutInterfaceIncrement_Private(AbutInterface f, PetscReal *const p[], Vec force[], Vec w[], PetscReal trace[])
 {
   PetscFunctionBegin;
@@ -205,7 +205,8 @@ const char *const AbutStarts[] = {"winkler", "nocontact", "zero", NULL};
 
    Input Parameters:
 +  iface - the map, set up
--  start - `ABUT_START_WINKLER` two elastic layers, the paper's; `ABUT_START_NOCONTACT` every body solved without contact forces; `ABUT_START_ZERO`
+-  start - `ABUT_START_WINKLER` two elastic layers, the paper's; `ABUT_START_NOCONTACT` every body solved without contact forces;
+           `ABUT_START_ZERO`
 
    Output Parameter:
 .  x - the trace

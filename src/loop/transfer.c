@@ -2,7 +2,8 @@
 
 /* Traces and pressures across a change of mesh: kept with the coordinates of their nodes, and evaluated at the new ones */
 
-static PetscErrorCode AbutOldTraceKeep_Private(AbutOldTrace *old, PetscInt n, const PetscReal x[], const PetscReal value[], PetscBool backwards)
+static PetscErrorCode AbutOldTraceKeep_Private(AbutOldTrace *old, PetscInt n, const PetscReal x[], const PetscReal value[],
+                                               PetscBool backwards)
 {
   PetscFunctionBegin;
   PetscCall(PetscFree2(old->x, old->value));

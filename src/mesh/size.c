@@ -9,8 +9,8 @@ static PetscErrorCode AbutMeshCheckCells_Private(AbutMesh mesh, PetscReal cells)
 {
   PetscFunctionBegin;
   AbutCheckInput(cells <= ABUT_CELLS_MAX, PetscObjectComm((PetscObject)mesh),
-                 "%smesh_size: asks for more than %g cells; give larger sizes away from where small cells are needed", ((PetscObject)mesh)->prefix,
-                 ABUT_CELLS_MAX);
+                 "%smesh_size: asks for more than %g cells; give larger sizes away from where small cells are needed",
+                 ((PetscObject)mesh)->prefix, ABUT_CELLS_MAX);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -28,7 +28,8 @@ static PetscErrorCode AbutMeshCheckSize_Private(AbutMesh mesh)
 
       PetscCall(AbutExpressionEvaluate(mesh->size, x, &wanted));
       AbutCheckInput(wanted > 0., PetscObjectComm((PetscObject)mesh),
-                     "%smesh_size: %g at (%g, %g) is not a length; give an expression above 0 everywhere, for example max(0.01,0.2*abs(x-1))",
+                     "%smesh_size: %g at (%g, %g) is not a length; give an expression above 0 everywhere, for example "
+                     "max(0.01,0.2*abs(x-1))",
                      ((PetscObject)mesh)->prefix, (double)wanted, (double)x[0], (double)x[1]);
       if (i % ABUT_GRID && j % ABUT_GRID) cells += width[0] * width[1] / (PetscSqr(ABUT_GRID) * PetscSqr(wanted));
     }

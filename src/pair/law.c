@@ -69,7 +69,8 @@ PetscErrorCode AbutPairCheck(AbutPair pair)
 }
 
 /*@C
-   AbutPairComputePressure - Nodal pressures of the penalty law, p = max(0, u_n1 + u_n2 - f)/theta, for given traces: eqs. (15), (20) of the paper
+   AbutPairComputePressure - Nodal pressures of the penalty law, p = max(0, u_n1 + u_n2 - f)/theta, for given traces: eqs. (15), (20) of the
+   paper
 
    Not Collective
 

@@ -1,7 +1,8 @@
 #include <abut/private/pairimpl.h> /*I "abutpair.h" I*/
 #include <petscdt.h>
 
-/* Dual-mortar weights on the common refinement of the two sides. One-sided quadrature would fail the contact patch test by some per cent. */
+/* Dual-mortar weights on the common refinement of the two sides. One-sided quadrature would fail the contact patch test by some per
+   cent. */
 
 /* Coordinate of every node along the straight pressure side, 0 at its first node */
 static PetscErrorCode AbutPairProject_Private(AbutPair pair, PetscReal *s[2], PetscReal tangent[2])
@@ -24,8 +25,8 @@ static PetscErrorCode AbutPairProject_Private(AbutPair pair, PetscReal *s[2], Pe
 
 #define ABUT_STIFFER 1.5
 
-/* The side with more nodes on the common part carries the pressures, the first one if equal; but never that of the clearly stiffer body. Pressures that only
-   a stiff body resolves are held by its small compliance alone, and oscillate. */
+/* The side with more nodes on the common part carries the pressures, the first one if equal; but never that of the clearly stiffer body.
+   Pressures that only a stiff body resolves are held by its small compliance alone, and oscillate. */
 static PetscErrorCode AbutPairChoosePressureSide_Private(AbutPair pair)
 {
   PetscInt  count[2] = {0, 0};

@@ -23,12 +23,14 @@ static const char *const AbutPressureSideNames[] = {"first", "second", "finer", 
 .  -NAME_pair_penalty <c>           - theta = c H/E, default 0.05; 0 for exact contact
 .  -NAME_pair_theta <theta>         - theta itself, length/stress
 .  -NAME_pair_height <H>            - H, where it is not the extent of the first body along the normal, length
--  -NAME_pair_pressure_side <first|second|finer> - which side carries the nodal pressures; finer is the other one where its body is clearly stiffer
+-  -NAME_pair_pressure_side <first|second|finer> - which side carries the nodal pressures; finer is the other one where its body is clearly
+                                                   stiffer
 
    Level: intermediate
 
    Note:
-   Limits: straight sides, frictionless, small displacements (the pairing of the sides is fixed). Exact contact, theta = 0, needs `SNESDDACTIVE`.
+   Limits: straight sides, frictionless, small displacements (the pairing of the sides is fixed). Exact contact, theta = 0, needs
+   `SNESDDACTIVE`.
 
 .seealso: `AbutPairSetFromOptions()`, `AbutPairSetUp()`, `AbutPairDestroy()`
 @*/
@@ -89,7 +91,8 @@ static PetscErrorCode AbutPairFindBodies_Private(AbutPair pair, const char text[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The two sides must lie against each other: opposite normals, a common part, and a distance that is small, or none where the gap is given */
+/* The two sides must lie against each other: opposite normals, a common part, and a distance that is small, or none where the gap is
+   given */
 static PetscErrorCode AbutPairCheckFacing_Private(AbutPair pair)
 {
   MPI_Comm    comm = PetscObjectComm((PetscObject)pair);

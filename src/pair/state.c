@@ -6,8 +6,8 @@ static PetscReal AbutPairPlace_Private(const AbutSide *m, PetscInt i)
   return PetscSqrtReal(PetscSqr(m->x[2 * i] - m->x[0]) + PetscSqr(m->x[2 * i + 1] - m->x[1]));
 }
 
-/* The edge beyond the last closed node, from the second to fourth open node on: there gap^(2/3) runs straight into the edge of an exact contact. At most an
-   element away from the last closed node, which is itself the answer where there is no such line. */
+/* The edge beyond the last closed node, from the second to fourth open node on: there gap^(2/3) runs straight into the edge of an exact
+   contact. At most an element away from the last closed node, which is itself the answer where there is no such line. */
 static PetscReal AbutPairEdgeOfGap_Private(AbutPair pair, const PetscReal g[], PetscInt in, PetscInt step)
 {
   const AbutSide *m    = pair->nodes[pair->which];
@@ -31,8 +31,9 @@ static PetscReal AbutPairEdgeOfGap_Private(AbutPair pair, const PetscReal g[], P
   return PetscMin(PetscMax(edge, last - h), last + h);
 }
 
-/* Where the penetration changes sign, or in exact contact where the gap opens. In contact at an end of the part that both sides share (a symmetric half model): distance from that end; else half the
-   distance of the two edges. Beyond the last node that may carry a pressure the contact reaches the end of the shared part. */
+/* Where the penetration changes sign, or in exact contact where the gap opens. In contact at an end of the part that both sides share (a
+   symmetric half model): distance from that end; else half the distance of the two edges. Beyond the last node that may carry a pressure
+   the contact reaches the end of the shared part. */
 static PetscReal AbutPairEdge_Private(AbutPair pair, const PetscReal g[], const PetscReal p[])
 {
   const AbutSide *m     = pair->nodes[pair->which];
@@ -71,6 +72,10 @@ static PetscReal AbutPairEdge_Private(AbutPair pair, const PetscReal g[], const 
 .  state - the state
 
    Level: intermediate
+
+   Note:
+   The contact edge is where the penetration changes sign (theta > 0); in exact contact, where the straight line through gap^(2/3) at the
+   second to fourth open node meets zero.
 
 .seealso: `AbutPairComputePressure()`, `AbutInterfaceGetPairState()`
 @*/

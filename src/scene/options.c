@@ -114,11 +114,13 @@ static PetscErrorCode AbutSceneFreeNames_Private(PetscInt n, char *names[])
 .  -scene_pairs <names>    - possible contacts, see `AbutPairCreate()`
 .  -scene_probes <names>   - points of the record: `-NAME_probe_body`, `-NAME_probe_point x,y`
 .  -scene_interleave       - one sweep and one adaptation a cycle, Fig. 2 of the paper; needs ddneumann
-.  -scene_loop_share <0.3>  - with an adaptor and ddactive: part of the estimated error that the loop may leave on a mesh to be refined; 0: none
+.  -scene_loop_share <0.3>  - with an adaptor and ddactive: part of the estimated error that the loop may leave on a mesh to be refined; 0:
+                              none
 .  -scene_cold              - with an adaptor: every mesh begins without the traces and forces of the last one
 .  -scene_eps_u <0.0015>   - with it: the relative change of the traces at which the run ends
 .  -scene_tol T            - relative error in the energy norm to be reached: chooses theta, tolerances and refinement, see below
-.  -adaptor_type, -estimator_type, -snes_* - what adapts, estimates, iterates; see `AbutAdaptorCreate()`, `AbutEstimatorCreate()`, `SNESDDNEUMANN`
+.  -adaptor_type, -estimator_type, -snes_* - what adapts, estimates, iterates; see `AbutAdaptorCreate()`, `AbutEstimatorCreate()`,
+                                             `SNESDDNEUMANN`
 -  -plugin <libraries>     - libraries with estimators of your own
 
    Level: beginner
@@ -151,7 +153,8 @@ PetscErrorCode AbutSceneSetFromOptions(AbutScene scene)
   PetscCall(AbutOptionsReal(PetscOptionsObject, "-scene_tol", "Relative error in the energy norm to be reached", &scene->tol, &hastol));
   PetscCall(PetscOptionsString("-adaptor_type", "Type of the adaptor", NULL, type, type, sizeof(type), &adapts));
   if ((adapts || hastol) && !scene->interleave) { /* else unread, and so an error */
-    PetscCall(AbutOptionsReal(PetscOptionsObject, "-scene_loop_share", "Part of the estimated error that the loop may leave", &scene->loop_share, NULL));
+    PetscCall(AbutOptionsReal(PetscOptionsObject, "-scene_loop_share", "Part of the estimated error that the loop may leave",
+                              &scene->loop_share, NULL));
     PetscCall(AbutOptionsBool(PetscOptionsObject, "-scene_cold", "No trace from the last mesh", &scene->cold, NULL));
   }
   PetscCall(PetscOptionsString("-estimator_type", "Type of the estimator", NULL, type, type, sizeof(type), &estimates));
@@ -159,8 +162,8 @@ PetscErrorCode AbutSceneSetFromOptions(AbutScene scene)
   PetscOptionsEnd();
   AbutCheckInput(!hastol || (scene->tol > 0. && scene->tol < 1.), comm,
                  "scene_tol: %g is not a relative error; give a number between 0 and 1, for example 0.01", (double)scene->tol);
-  AbutCheckInput(scene->loop_share >= 0. && scene->loop_share < 1., comm, "scene_loop_share: %g; give a number from 0 up and below 1, for example 0.3",
-                 (double)scene->loop_share);
+  AbutCheckInput(scene->loop_share >= 0. && scene->loop_share < 1., comm,
+                 "scene_loop_share: %g; give a number from 0 up and below 1, for example 0.3", (double)scene->loop_share);
   AbutCheckInput(scene->eps_u > 0., comm, "scene_eps_u: %g; give a positive number, for example 0.0015", (double)scene->eps_u);
   AbutCheckInput(nbodies > 0, comm,
                  "scene_bodies: missing; give the names of the bodies, or a scene file, for example examples/layers/layers.yml");

@@ -24,8 +24,8 @@ static PetscErrorCode AbutSceneUniformUnknowns_Private(AbutMesh mesh, PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A body that only moves has forces and energies of round-off, and of the linear solver's tolerance: they are compared with at least a thousandth of E times
-   the largest displacement, and this times that displacement */
+/* A body that only moves has forces and energies of round-off, and of the linear solver's tolerance: they are compared with at least a
+   thousandth of E times the largest displacement, and this times that displacement */
 static PetscErrorCode AbutSceneScales_Private(AbutBody body, PetscReal *force, PetscReal *energy)
 {
   PetscReal young, poisson, umax;

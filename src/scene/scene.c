@@ -34,8 +34,8 @@ PetscErrorCode AbutSceneCreate(MPI_Comm comm, AbutScene *scene)
 }
 
 /*@
-   AbutSceneSetUp - Sets up what the scene made: meshes, operators, pairs; an option that nobody has read by now, a body that nothing holds, a gap or a
-   condition that is not finite end the run before that
+   AbutSceneSetUp - Sets up what the scene made: meshes, operators, pairs; an option that nobody has read by now, a body that nothing holds,
+   a gap or a condition that is not finite end the run before that
 
    Collective
 

@@ -170,8 +170,8 @@ static PetscErrorCode AbutSceneOutput_Private(AbutScene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A mesh that is going to be refined need not be solved further than to a part of its own error; the last one is solved to the end. Of the first mesh the error
-   is not known yet. */
+/* A mesh that is going to be refined need not be solved further than to a part of its own error; the last one is solved to the end. Of
+   the first mesh the error is not known yet. */
 static PetscErrorCode AbutSceneLoosen_Private(AbutScene scene, PetscReal *rtol, PetscBool *loose)
 {
   PetscReal       enough;
@@ -197,10 +197,11 @@ static PetscErrorCode AbutSceneFreeMarks_Private(AbutScene scene, PetscBool *mar
 }
 
 /* Solves, estimates and marks on the present meshes */
-static PetscErrorCode AbutSceneCycle_Private(AbutScene scene, PetscBool *marks[], PetscBool *converged, AbutAdaptVerdict *adapt, PetscInt *nmarked)
+static PetscErrorCode AbutSceneCycle_Private(AbutScene scene, PetscBool *marks[], PetscBool *converged, AbutAdaptVerdict *adapt,
+                                             PetscInt *nmarked)
 {
   PetscReal norm[ABUT_MAX_NAMES], rtol = 0.;
-  PetscBool loose, again = PETSC_TRUE;
+  PetscBool loose, again               = PETSC_TRUE;
 
   PetscFunctionBegin;
   PetscCall(AbutSceneTrace_Private(scene));
@@ -231,8 +232,8 @@ static PetscErrorCode AbutSceneCycle_Private(AbutScene scene, PetscBool *marks[]
    Level: beginner
 
    Notes:
-   By default the loop runs on each mesh until it leaves `-scene_loop_share` of the estimated error (ddactive) or to its tolerance (other types), and to its
-   tolerance on the last mesh; with `-scene_interleave` a cycle is one sweep and one adaptation, as in Fig. 2
+   By default the loop runs on each mesh until it leaves `-scene_loop_share` of the estimated error (ddactive) or to its tolerance (other
+   types), and to its tolerance on the last mesh; with `-scene_interleave` a cycle is one sweep and one adaptation, as in Fig. 2
    of the paper. A run that does not converge keeps and writes its last answer; see `AbutSceneGetExitStatus()`.
 
 .seealso: `AbutSceneSetFromOptions()`, `AbutSceneGetExitStatus()`

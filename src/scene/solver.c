@@ -76,7 +76,8 @@ PetscErrorCode AbutSceneCheckLoop_Private(AbutScene scene)
     PetscCall(AbutPairGetName(scene->pair[i], &name));
     PetscCall(AbutPairGetTheta(scene->pair[i], &theta));
     AbutCheckInput(theta > 0., comm,
-                   "snes_type: %s needs a penalty, and that of %s is 0, exact contact; give a positive %s_pair_penalty, for example 0.05, or "
+                   "snes_type: %s needs a penalty, and that of %s is 0, exact contact; give a positive %s_pair_penalty, for example 0.05, "
+                   "or "
                    "-snes_type ddactive",
                    type, name, name);
   }

@@ -2,8 +2,8 @@
 #include <abut/private/sysimpl.h>
 #include <ctype.h>
 
-/* Where the message of a bad input goes, and that of a file that could not be written: one line, once, from the first rank. Everything else is a defect and
-   keeps PETSc's traceback. */
+/* Where the message of a bad input goes, and that of a file that could not be written: one line, once, from the first rank. Everything
+   else is a defect and keeps PETSc's traceback. */
 static PetscErrorCode AbutErrorHandler_Private(MPI_Comm comm, int line, const char *fun, const char *file, PetscErrorCode n,
                                                PetscErrorType p, const char *mess, void *ctx)
 {
@@ -105,8 +105,8 @@ static const char *AbutStrayWord_Private(int n, char *const words[])
    Level: beginner
 
    Notes:
-   Options on the command line win over those of the files. A bad input is reported in one line on standard error, and so is a word that belongs to no
-   option: PETSc would skip it.
+   Options on the command line win over those of the files. A bad input is reported in one line on standard error, and so is a word that
+   belongs to no option: PETSc would skip it.
 
 .seealso: `AbutFinalize()`, `AbutSceneCreate()`
 @*/

@@ -27,6 +27,11 @@ def test_loops_agree():
     same_answer(["loop/automatic.opts", "loop/anderson.opts", "loop/ngmres.opts", "loop/qn.opts"], 1e-6)
 
 
+def test_the_fast_loop_agrees_where_it_solves_every_mesh_to_the_end():
+    fast = run(LAYERS, *SMALL, *options("loop/ddactive.opts"), "-scene_loop_share 0")
+    assert abs(fast["pair.mid.force"] / solve("loop/anderson.opts")["pair.mid.force"] - 1) < 1e-6, fast["pair.mid.force"]
+
+
 def test_the_loop_of_the_paper_stops_early():
     assert solve("loop/paper.opts")["sweeps"] < 10 * solve("loop/paper.opts")["cycles"]
 

@@ -1,5 +1,5 @@
-/* The contact model and the loop that uses it: the programme against all zones tried one by one, the layers against the bodies themselves, what a sweep teaches,
-   and the answers of two blocks and of a block that only contact holds, which are formulas */
+/* The contact model and the loop that uses it: the programme against all zones tried one by one, the layers against the bodies
+   themselves, what a sweep teaches, and the answers of two blocks and of a block that only contact holds, which are formulas */
 #include "ck_box.h"
 #include <abutscene.h>
 #include <abut/private/loopimpl.h>
@@ -16,12 +16,13 @@ static AbutContactModel model;
 
 static void Open(const char gap[], const char more[])
 {
-  static const char blocks[] = "-scene_bodies lower,upper -scene_pairs mid -lower_mesh_box 0,0,4,1 -lower_mesh_cells 64,16 -lower_material_young 2.1e5 "
-                               "-lower_material_poisson 0.3 -lower_bc_left_u1 0 -lower_bc_bottom_u2 0 -upper_mesh_box 0,1,4,2 -upper_mesh_cells 48,12 "
-                               "-upper_material_young 2.1e5 -upper_material_poisson 0.3 -upper_bc_left_u1 0 "
-                               "-mid_pair_bodies upper,lower -mid_pair_sides bottom,top";
-  char              text[256];
-  PetscInt          number;
+  static const char
+       blocks[] = "-scene_bodies lower,upper -scene_pairs mid -lower_mesh_box 0,0,4,1 -lower_mesh_cells 64,16 -lower_material_young 2.1e5 "
+                  "-lower_material_poisson 0.3 -lower_bc_left_u1 0 -lower_bc_bottom_u2 0 -upper_mesh_box 0,1,4,2 -upper_mesh_cells 48,12 "
+                  "-upper_material_young 2.1e5 -upper_material_poisson 0.3 -upper_bc_left_u1 0 "
+                  "-mid_pair_bodies upper,lower -mid_pair_sides bottom,top";
+  char text[256];
+  PetscInt number;
 
   CkOk(PetscOptionsClear(NULL));
   CkOk(PetscOptionsInsertString(NULL, blocks));

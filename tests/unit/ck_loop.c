@@ -332,8 +332,8 @@ START_TEST(a_second_look_at_the_same_trace_is_no_sweep)
 }
 END_TEST
 
-/* Walks the trace v in its order: the values of each side that this rank owns, one side after the other. Sets those of side s to a[s] + b[s] x, or checks
-   that they are. */
+/* Walks the trace v in its order: the values of each side that this rank owns, one side after the other. Sets those of side s to a[s] +
+   b[s] x, or checks that they are. */
 static void Walk(Vec v, const PetscReal a[2], const PetscReal b[2], PetscBool check)
 {
   PetscScalar *value;

@@ -260,7 +260,7 @@ START_TEST(sides_of_unequal_length_are_in_balance)
   const PetscInt variant = _i % nvariants, across = !patch->along;
   AbutScene      scene = Create(patch, variant,
                                 "-mid_pair_gap 0.002 -mid_pair_theta 0.5 -snes_type ddneumann -snes_ddneumann_start nocontact "
-                                "-snes_ddneumann_gamma 0.3 -snes_rtol 1e-11");
+                                     "-snes_ddneumann_gamma 0.3 -snes_rtol 1e-11");
   Box            box[2];
   AbutBody       body[2];
   AbutInterface  iface;

@@ -53,3 +53,15 @@ def test_a_cap_ends_the_run_with_the_best_answer():
     assert r["verdict"] == "limit_level" and r["body.lower.level_max"] == 3 and r["pair.mid.force"] > 120, r
     r = run(LAYERS, FAST, "-adaptor_threshold 0.02 -adaptor_max_unknowns 300", expect=3)
     assert r["verdict"] == "limit_unknowns" and r["body.lower.unknowns"] < 600, r
+
+
+def test_sweeps_of_all_meshes_together():
+    """A mesh that will be refined is solved to a part of its error, from what the layer model and the meshes before know: few sweeps in all, each weighed by
+    the unknowns of its mesh at most 1.5 times those of the last mesh alone. Unweighed the paper's example stays above that: eight meshes take eight sweeps."""
+    fast, cold = "-snes_type ddactive", "-scene_cold -scene_loop_share 0"
+    warm, alone = (run(LAYERS, fast, "-scene_tol 0.01 -snes_rtol 1e-8 -estimator_type zz", *more) for more in ((), (cold,)))
+    assert warm["sweeps_work"] <= 1.5 * alone["sweeps_cycle"], (warm["sweeps_work"], alone["sweeps_cycle"])
+    assert warm["sweeps"] < 0.5 * alone["sweeps"] and abs(warm["pair.mid.force"] / alone["pair.mid.force"] - 1) < 1e-4
+    assert f"sweeps: {warm['sweeps']} on {warm['cycles']} meshes, worth {warm['sweeps_work']:.1f} of the last mesh" in warm.stdout.splitlines()
+    r = run(LAYERS, fast)
+    assert r["sweeps"] <= 16 and r["eta_max.lower"] <= 0.1 and abs(r["pair.mid.force"] / 123.078421 - 1) < 3e-3, r

@@ -58,13 +58,13 @@ struct _p_AbutInterface {
   PetscReal        residual, pressureresidual; /* |G-x|/|G| and the same of the pressures, of the last sweep */
   PetscBool        linearfailed;
   PetscReal        residualbest;
-  PetscReal        fnorm;        /* of F at the first iterate */
-  PetscReal        best[2];      /* least norm of F in the present window of iterations, and of the one before */
-  PetscReal        rate;         /* what the solver's slowest mode loses in an iteration, 0 unknown */
-  const char      *failure;      /* why the stop test gave up, in one word */
+  PetscReal        fnorm;         /* of F at the first iterate */
+  PetscReal        best[2];       /* least norm of F in the present window of iterations, and of the one before */
+  PetscReal        rate;          /* what the solver's slowest mode loses in an iteration, 0 unknown */
+  const char      *failure;       /* why the stop test gave up, in one word */
   char             floating[256]; /* the body that contact does not hold, and its motion */
-  AbutOldTrace    *old;          /* [2*npairs] traces */
-  AbutOldTrace    *oldpressure;  /* [npairs] pressures less the guess, along the first side: what the model did not know */
+  AbutOldTrace    *old;           /* [2*npairs] traces */
+  AbutOldTrace    *oldpressure;   /* [npairs] pressures less the guess, along the first side: what the model did not know */
   PetscBool        guessed, warm; /* guess belongs to the present meshes; oldpressure is there */
 };
 
@@ -96,8 +96,8 @@ PETSC_INTERN PetscErrorCode AbutInterfaceLayers_Private(AbutInterface, AbutConta
 PETSC_INTERN PetscErrorCode AbutInterfacePenetration_Private(AbutInterface, AbutContactModel, const PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutInterfaceComply_Private(AbutInterface, AbutContactModel, const PetscReal[], Vec[], Vec[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutContactModelLearn_Private(AbutContactModel, const PetscReal[], const PetscReal[]);
-PETSC_EXTERN PetscErrorCode AbutContactModelSolve_Private(AbutContactModel, const PetscReal[], const PetscReal[], PetscReal[], PetscReal[], PetscInt *,
-                                                          PetscBool *);
+PETSC_EXTERN PetscErrorCode AbutContactModelSolve_Private(AbutContactModel, const PetscReal[], const PetscReal[], PetscReal[], PetscReal[],
+                                                          PetscInt *, PetscBool *);
 PETSC_INTERN PetscReal      AbutContactModelEnergy_Private(const AbutContactModel, const PetscReal[], const PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutContactModelDestroy_Private(AbutContactModel *);
 PETSC_EXTERN PetscLogEvent  ABUTINTERFACE_Sweep;

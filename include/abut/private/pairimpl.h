@@ -9,8 +9,9 @@ typedef enum {
   ABUT_PRESSURE_FINER
 } AbutPressureSide;
 
-/* A piece of the common refinement: one element of each side, and M[s][i][k] = integral of psi_i phi_k, psi_i the dual function of node i of the pressure
-   side's element, phi_k the hat function of node k of the element of side s: s = 0 the pressure side, s = 1 the other one */
+/* A piece of the common refinement: one element of each side, and M[s][i][k] = integral of psi_i phi_k, psi_i the dual function of node
+   i of the pressure side's element, phi_k the hat function of node k of the element of side s: s = 0 the pressure side, s = 1 the other
+   one */
 typedef struct {
   PetscInt  element[2];
   PetscReal M[2][2][2];

@@ -3,8 +3,8 @@
 #include <abutsys.h>
 #include <petsc/private/petscimpl.h>
 
-/* What PETSc says of a bad option, as one line. AbutCallOptions(comm, what, Call(...)): a bad value that Call() meets is reported in one line that begins with
-   `what`; a bad input that the call itself reports keeps its own line. */
+/* What PETSc says of a bad option, as one line. AbutCallOptions(comm, what, Call(...)): a bad value that Call() meets is reported in one
+   line that begins with `what`; a bad input that the call itself reports keeps its own line. */
 #define ABUT_MESSAGE 512
 PETSC_INTERN PetscErrorCode AbutErrorKeep_Private(MPI_Comm, int, const char *, const char *, PetscErrorCode, PetscErrorType, const char *,
                                                   void *);
