@@ -50,7 +50,7 @@ PETSC_EXTERN PetscErrorCode AbutBodyGetFreeModeCount(AbutBody, PetscInt *);
 PETSC_EXTERN PetscErrorCode AbutBodyGetFreeModeName(AbutBody, PetscInt, char[], size_t);
 PETSC_EXTERN PetscErrorCode AbutBodyGetFreeMotion(AbutBody, PetscInt, const PetscReal[2], PetscReal[2]);
 PETSC_EXTERN PetscErrorCode AbutBodyGetFreeModes(AbutBody, PetscInt *, const Vec *[]);
-PETSC_EXTERN PetscErrorCode AbutBodyGetImbalance(AbutBody, PetscReal[]);
+PETSC_EXTERN PetscErrorCode AbutBodyGetImbalance(AbutBody, PetscBool, PetscReal[]);
 
 /* Solve with the given nodal contact forces (a vector of AbutBodyCreateVec(), or NULL for none); the displacement stays in the body */
 PETSC_EXTERN PetscErrorCode AbutBodySolve(AbutBody, Vec);

@@ -355,26 +355,36 @@ PetscErrorCode AbutBodyMove(AbutBody body, const PetscReal a[])
 
    Collective
 
-   Input Parameter:
-.  body - the body, set up
+   Input Parameters:
++  body    - the body, set up
+-  contact - whether the contact forces that now act are to be counted, or the tractions alone
 
    Output Parameter:
-.  r - [n] products of the tractions' and contact forces' nodal values, as they now act, with the vectors of `AbutBodyGetFreeModes()`
+.  r - [n] products of the nodal forces with the vectors of `AbutBodyGetFreeModes()`, 0 where that is round-off
 
    Level: intermediate
 
 .seealso: `AbutBodyGetFreeModes()`, `AbutBodySolve()`
 @*/
-PetscErrorCode AbutBodyGetImbalance(AbutBody body, PetscReal r[])
+PetscErrorCode AbutBodyGetImbalance(AbutBody body, PetscBool contact, PetscReal r[])
 {
   PetscScalar of[2][ABUT_MAX_MODES];
+  PetscReal   size[2] = {0., 0.};
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, ABUTBODY_CLASSID, 1);
   PetscCall(AbutBodyNeedSetUp_Private(body));
   if (!body->nmodes) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecMDot(body->load, body->nmodes, body->mode, of[0]));
-  PetscCall(VecMDot(body->contact, body->nmodes, body->mode, of[1]));
-  for (PetscInt k = 0; k < body->nmodes; ++k) r[k] = of[0][k] + of[1][k];
+  PetscCall(VecNorm(body->load, NORM_2, &size[0]));
+  for (PetscInt k = 0; k < body->nmodes; ++k) of[1][k] = 0.;
+  if (contact) {
+    PetscCall(VecMDot(body->contact, body->nmodes, body->mode, of[1]));
+    PetscCall(VecNorm(body->contact, NORM_2, &size[1]));
+  }
+  for (PetscInt k = 0; k < body->nmodes; ++k) {
+    r[k] = of[0][k] + of[1][k];
+    if (PetscAbsReal(r[k]) <= 1e-14 * (size[0] + size[1])) r[k] = 0.;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

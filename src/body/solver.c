@@ -92,7 +92,7 @@ PetscErrorCode AbutBodyChooseSolver_Private(AbutBody body, PetscInt n, PetscBool
 {
   const char *prefix     = ((PetscObject)body)->prefix;
   char        pctype[64] = "";
-  PetscBool   haspc, hasksp, factor;
+  PetscBool   haspc, hasksp, factor, once;
   PC          pc;
 
   PetscFunctionBegin;
@@ -108,6 +108,8 @@ PetscErrorCode AbutBodyChooseSolver_Private(AbutBody body, PetscInt n, PetscBool
       if (factor) PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
     }
     PetscCall(KSPSetFromOptions(body->ksp));
+    PetscCall(PetscObjectTypeCompare((PetscObject)body->ksp, KSPPREONLY, &once));
+    if (once) PetscCall(KSPSetInitialGuessNonzero(body->ksp, PETSC_FALSE));
   }
   PetscCall(AbutBodyRenewPreconditioner_Private(body));
   PetscFunctionReturn(PETSC_SUCCESS);

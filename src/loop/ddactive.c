@@ -40,19 +40,6 @@ static PetscErrorCode AbutActiveDestroy_Private(AbutActive *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Forces on the contact nodes of all pairs -> nodal pressures of each pair; and back */
-static void AbutActivePressure_Private(const AbutContactModel model, PetscInt npairs, const PetscReal F[], PetscReal *const p[])
-{
-  for (PetscInt i = 0; i < npairs; ++i)
-    for (PetscInt c = model->first[i]; c < model->first[i + 1]; ++c) p[i][model->node[c]] = F[c] / model->D[c];
-}
-
-static void AbutActiveForce_Private(const AbutContactModel model, PetscInt npairs, PetscReal *const p[], PetscReal F[])
-{
-  for (PetscInt i = 0; i < npairs; ++i)
-    for (PetscInt c = model->first[i]; c < model->first[i + 1]; ++c) F[c] = p[i][model->node[c]] * model->D[c];
-}
-
 static PetscErrorCode AbutActiveDefect_Private(AbutActive *s)
 {
   PetscFunctionBegin;
@@ -76,17 +63,17 @@ static PetscErrorCode AbutActiveStart_Private(AbutActive *s)
       PetscCall(AbutPairComputeSupport(f->pair[i], f->g + f->offset[2 * i], f->g + f->offset[2 * i + 1]));
     PetscCall(AbutActiveDefect_Private(s));
     PetscCall(AbutContactModelSolve_Private(s->model, s->r, s->F, s->d, s->a, &loose, &solved));
-    AbutActivePressure_Private(s->model, f->npairs, s->d, f->guess);
-    AbutActivePressure_Private(s->model, f->npairs, s->d, f->p);
+    AbutContactModelPressures_Private(s->model, f->npairs, s->d, f->guess);
+    AbutContactModelPressures_Private(s->model, f->npairs, s->d, f->p);
     f->guessed  = PETSC_TRUE;
-    s->balanced = (PetscBool)!f->warm;
+    s->balanced = (PetscBool)(!f->warm || !s->model->m);
     if (f->warm) PetscCall(AbutInterfaceTransferPressure_Private(f));
     PetscCall(PetscLogEventBegin(ABUTINTERFACE_Sweep, f, 0, 0, 0));
     PetscCall(AbutInterfaceSolveBodies_Private(f));
     ++f->sweeps;
     PetscCall(PetscLogEventEnd(ABUTINTERFACE_Sweep, f, 0, 0, 0));
   }
-  AbutActiveForce_Private(s->model, f->npairs, f->p, s->F);
+  AbutContactModelForces_Private(s->model, f->npairs, f->p, s->F);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -104,13 +91,31 @@ static PetscErrorCode AbutActiveMove_Private(AbutActive *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the model would still change, in energy, relative to the contact as it is or will be */
+/* The energy of the contact as it is: F'(S + soft)F of the model, or the bodies' own and the penalty's where that is less. A load on a
+   body that floats is balanced by forces for which S has but a stand-in. */
+static PetscErrorCode AbutActiveWhole_Private(AbutActive *s, PetscReal *whole)
+{
+  PetscReal own = 0.;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < s->iface->nbodies; ++b) {
+    PetscReal strain, work;
+
+    PetscCall(AbutBodyGetEnergy(s->iface->body[b], &strain, &work));
+    own += 2. * PetscMax(0., strain);
+  }
+  for (PetscInt i = 0; i < s->model->n; ++i) own += s->model->soft[i] * PetscSqr(s->F[i]);
+  *whole = PetscMin(own, AbutContactModelEnergy_Private(s->model, s->model->soft, s->F));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the model would still change, in energy, relative to the contact as it is */
 static PetscErrorCode AbutActivePredict_Private(AbutActive *s, SNES snes, PetscReal *left)
 {
   AbutContactModel model = s->model;
   PetscInt         loose;
   PetscBool        solved;
-  PetscReal        whole;
+  PetscReal        whole = 0., change;
 
   PetscFunctionBegin;
   PetscCall(AbutActiveDefect_Private(s));
@@ -123,9 +128,9 @@ static PetscErrorCode AbutActivePredict_Private(AbutActive *s, SNES snes, PetscR
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(AbutActiveMove_Private(s));
-  for (PetscInt i = 0; i < model->n; ++i) s->q[i] = s->F[i] + s->d[i];
-  whole = PetscMax(AbutContactModelEnergy_Private(model, model->soft, s->F), AbutContactModelEnergy_Private(model, model->soft, s->q));
-  *left = whole > 0. ? PetscSqrtReal(AbutContactModelEnergy_Private(model, model->soft, s->d) / whole) : 0.;
+  PetscCall(AbutActiveWhole_Private(s, &whole));
+  change = AbutContactModelEnergy_Private(model, model->soft, s->d);
+  *left  = change > 0. ? PetscSqrtReal(change / PetscMax(whole, change)) : 0.;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -140,12 +145,13 @@ static PetscErrorCode AbutActiveStep_Private(AbutActive *s)
   PetscFunctionBegin;
   PetscCall(AbutInterfaceComply_Private(f, model, s->d, s->force, s->w, s->q));
   ++f->sweeps;
+  if (f->linearfailed) PetscFunctionReturn(PETSC_SUCCESS); /* the bodies stay as they were, which is the best there is */
   for (PetscInt i = 0; i < model->n; ++i) {
     slope += s->d[i] * s->r[i];
     curvature += s->d[i] * (s->q[i] + model->soft[i] * s->d[i]);
     if (s->d[i] < 0.) furthest = PetscMin(furthest, -s->F[i] / s->d[i]);
   }
-  step = s->balanced && curvature > 0. ? PetscMin(slope / curvature, furthest) : 1.;
+  step = s->balanced && curvature > 0. ? PetscMin(PetscMax(0., slope / curvature), furthest) : 1.;
   for (PetscInt i = 0; i < model->n; ++i) s->F[i] = PetscMax(0., s->F[i] + step * s->d[i]);
   for (PetscInt b = 0; b < f->nbodies; ++b) {
     PetscCall(VecScale(s->force[b], step));
@@ -171,7 +177,7 @@ static PetscErrorCode AbutActiveLoop_Private(AbutActive *s, SNES snes)
     snes->norm = s->iface->residual = s->iface->pressureresidual = left;
     PetscCall(SNESLogConvergenceHistory(snes, left, 0));
     PetscCall(SNESMonitor(snes, it, left));
-    if (!snes->reason) PetscUseTypeMethod(snes, converged, it, 0., 0., left, &snes->reason, snes->cnvP);
+    if (!snes->reason && s->balanced) PetscUseTypeMethod(snes, converged, it, 0., 0., left, &snes->reason, snes->cnvP);
     if (!snes->reason && it == snes->max_its) snes->reason = SNES_DIVERGED_MAX_IT;
     if (left < 0.5 * best) {
       best = left;
@@ -199,7 +205,7 @@ static PetscErrorCode SNESSolve_DDActive(SNES snes)
   PetscCall(AbutActiveCreate_Private(f, &s));
   PetscCall(AbutActiveStart_Private(&s));
   PetscCall(AbutActiveLoop_Private(&s, snes));
-  AbutActivePressure_Private(s.model, f->npairs, s.F, f->p);
+  AbutContactModelPressures_Private(s.model, f->npairs, s.F, f->p);
   PetscCall(PetscArraycpy(f->x, f->g, f->offset[2 * f->npairs]));
   PetscCall(AbutInterfaceLocalize_Private(f, f->g, snes->vec_sol));
   PetscCall(AbutActiveDestroy_Private(&s));
@@ -247,7 +253,8 @@ static PetscErrorCode SNESView_DDActive(PETSC_UNUSED SNES snes, PetscViewer view
    Verdicts beside converged: stagnation (the estimate does not halve in 20 steps, for example because the bodies are solved too inexactly),
    cycling (the zone of the model does not settle), floating (contact does not hold a body), linear_solver, max_iterations.
 
-   Limits: the model is dense in the contact nodes of all pairs, n: 16 n^2 bytes and some n^3 operations a mesh. Bodies are boxes.
+   Limits: the model is dense in the contact nodes of all pairs, n: some 40 n^2 bytes, some n^3 operations a mesh and n^3/3 for each zone
+   that is tried. Bodies are boxes.
 
    Sources: Hintermueller, Ito, Kunisch, SIAM J. Optim. 13 (2002), the active set; Farhat, Roux, IJNME 32 (1991), the balance of floating
    bodies; the closed forms of a layer under a harmonic pressure: Sneddon, Fourier Transforms (1951).

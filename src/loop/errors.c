@@ -53,8 +53,7 @@ static PetscErrorCode AbutInterfaceContactErrors_Private(AbutInterface f, PetscR
   PetscFunctionBegin;
   PetscCall(AbutInterfaceGetModel_Private(f, &model));
   PetscCall(PetscCalloc4(model->n, &F, model->n, &d, model->n, &e, model->n, &exact));
-  for (PetscInt i = 0; i < f->npairs; ++i)
-    for (PetscInt c = model->first[i]; c < model->first[i + 1]; ++c) F[c] = f->p[i][model->node[c]] * model->D[c];
+  AbutContactModelForces_Private(model, f->npairs, f->p, F);
   for (PetscInt i = 0; i < model->n; ++i)
     if (model->soft[i] > 0.) soft = PETSC_TRUE;
   PetscCall(AbutInterfaceAsk_Private(f, model, model->soft, F, d, solved));

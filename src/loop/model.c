@@ -55,7 +55,7 @@ static PetscErrorCode AbutContactModelMotions_Private(AbutInterface f, AbutConta
     PetscReal  load[3];
 
     PetscCall(AbutBodyGetFreeModes(f->body[b], &nmodes, &mode));
-    PetscCall(AbutBodyGetImbalance(f->body[b], load));
+    PetscCall(AbutBodyGetImbalance(f->body[b], PETSC_FALSE, load));
     for (PetscInt k = 0; k < nmodes; ++k, ++m) {
       PetscReal *G = model->G + m * model->n;
 
@@ -89,6 +89,8 @@ static PetscErrorCode AbutContactModelOpen_Private(AbutInterface f, AbutContactM
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+#define ABUT_CONTACT_NODES 30000 /* 7 GB for the compliance alone */
+
 /* The model of the present meshes */
 PetscErrorCode AbutInterfaceGetModel_Private(AbutInterface f, AbutContactModel *model)
 {
@@ -97,6 +99,10 @@ PetscErrorCode AbutInterfaceGetModel_Private(AbutInterface f, AbutContactModel *
     PetscCall(PetscNew(&f->model));
     PetscCall(AbutContactModelNodes_Private(f, f->model));
     PetscCall(AbutContactModelOpen_Private(f, f->model));
+    AbutCheckInput(f->model->n <= ABUT_CONTACT_NODES, PetscObjectComm((PetscObject)f),
+                   "scene_pairs: %" PetscInt_FMT
+                   " contact nodes are too many for the dense contact model; give larger cells on the contact sides, at most %d nodes",
+                   f->model->n, ABUT_CONTACT_NODES);
     PetscCall(PetscCalloc1(f->model->n * f->model->n, &f->model->S));
     PetscCall(AbutInterfaceLayers_Private(f, f->model));
     PetscCall(AbutContactModelMotions_Private(f, f->model));
@@ -137,6 +143,19 @@ PetscErrorCode AbutInterfacePenetration_Private(AbutInterface f, AbutContactMode
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Forces on the contact nodes of all pairs -> nodal pressures of each pair; and back */
+void AbutContactModelPressures_Private(const AbutContactModel model, PetscInt npairs, const PetscReal F[], PetscReal *const p[])
+{
+  for (PetscInt i = 0; i < npairs; ++i)
+    for (PetscInt c = model->first[i]; c < model->first[i + 1]; ++c) p[i][model->node[c]] = F[c] / model->D[c];
+}
+
+void AbutContactModelForces_Private(const AbutContactModel model, PetscInt npairs, PetscReal *const p[], PetscReal F[])
+{
+  for (PetscInt i = 0; i < npairs; ++i)
+    for (PetscInt c = model->first[i]; c < model->first[i + 1]; ++c) F[c] = p[i][model->node[c]] * model->D[c];
+}
+
 /* q = S d by one solve of every body with the forces d of the contact nodes alone: force[b] are the nodal forces, w[b] the
    displacements. The bodies' own displacements stay. */
 PetscErrorCode AbutInterfaceComply_Private(AbutInterface f, AbutContactModel model, const PetscReal d[], Vec force[], Vec w[],
@@ -146,10 +165,8 @@ PetscErrorCode AbutInterfaceComply_Private(AbutInterface f, AbutContactModel mod
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc2(f->offset[2 * f->npairs], &trace, f->npairs, &p));
-  for (PetscInt i = 0; i < f->npairs; ++i) {
-    PetscCall(PetscCalloc1(f->offset[2 * i + 2] - f->offset[2 * i], &p[i]));
-    for (PetscInt c = model->first[i]; c < model->first[i + 1]; ++c) p[i][model->node[c]] = d[c] / model->D[c];
-  }
+  for (PetscInt i = 0; i < f->npairs; ++i) PetscCall(PetscCalloc1(f->offset[2 * i + 2] - f->offset[2 * i], &p[i]));
+  AbutContactModelPressures_Private(model, f->npairs, d, p);
   PetscCall(AbutInterfaceIncrement_Private(f, p, force, w, trace));
   PetscCall(AbutInterfacePenetration_Private(f, model, trace, q));
   for (PetscInt c = 0; c < model->n; ++c) q[c] = model->open[c] - q[c];

@@ -70,13 +70,15 @@ static PetscErrorCode AbutInterfaceInexactness_Private(AbutInterface f, PetscRea
     PetscReal strain, work, error, young, poisson, umax;
     PetscBool direct;
     KSP       ksp;
+    PC        pc;
 
     PetscCall(AbutBodyGetEnergy(f->body[b], &strain, &work));
     PetscCall(AbutBodyGetMaterial(f->body[b], &young, &poisson));
     PetscCall(VecNorm(f->u[b], NORM_INFINITY, &umax));
     energy2 += 2. * strain + 1e-3 * young * umax * umax;
     PetscCall(AbutBodyGetKSP(f->body[b], &ksp));
-    PetscCall(PetscObjectTypeCompare((PetscObject)ksp, KSPPREONLY, &direct));
+    PetscCall(KSPGetPC(ksp, &pc));
+    PetscCall(PetscObjectTypeCompareAny((PetscObject)pc, &direct, PCCHOLESKY, PCLU, ""));
     if (direct) continue;
     PetscCall(AbutBodyGetLinearError(f->body[b], &error));
     error2 += error * error;

@@ -41,10 +41,9 @@ static PetscErrorCode AbutMeshCheckSize_Private(AbutMesh mesh)
 static PetscErrorCode AbutMeshMarkSize_Private(AbutMesh mesh, PetscBool mark[], PetscInt *marked)
 {
   const AbutMeshTopology *t = &mesh->topology;
-  PetscInt                cells;
+  PetscInt                cells, count[2] = {0, 0}; /* cells to split, and cells where the wanted size is none */
 
   PetscFunctionBegin;
-  *marked = 0;
   for (PetscInt c = 0; c < t->ncells; ++c) {
     const PetscInt *v         = t->cell + t->corners * c;
     PetscReal       middle[2] = {0., 0.}, size2 = 0., wanted;
@@ -56,10 +55,16 @@ static PetscErrorCode AbutMeshMarkSize_Private(AbutMesh mesh, PetscBool mark[], 
       for (PetscInt d = 0; d < 2; ++d) middle[d] += p[d] / t->corners;
     }
     PetscCall(AbutExpressionEvaluate(mesh->size, middle, &wanted));
-    mark[c] = (PetscBool)(t->level[c] < ABUT_LEVEL_MAX && size2 > PetscSqr(PetscMax(0., wanted)) * (1. + 1e-10));
-    *marked += mark[c];
+    mark[c] = (PetscBool)(t->level[c] < ABUT_LEVEL_MAX && size2 > PetscSqr(wanted) * (1. + 1e-10));
+    count[0] += mark[c];
+    if (wanted <= 0.) ++count[1];
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, marked, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)mesh)));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 2, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)mesh)));
+  AbutCheckInput(!count[1], PetscObjectComm((PetscObject)mesh),
+                 "%smesh_size: not a length somewhere in the box; give an expression above 0 everywhere, for example "
+                 "max(0.01,0.2*abs(x-1))",
+                 ((PetscObject)mesh)->prefix);
+  *marked = count[0];
   PetscCall(AbutMeshGetCellCount(mesh, &cells));
   PetscCall(AbutMeshCheckCells_Private(mesh, cells + 3. * *marked));
   PetscFunctionReturn(PETSC_SUCCESS);

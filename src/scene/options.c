@@ -101,6 +101,25 @@ static PetscErrorCode AbutSceneFreeNames_Private(PetscInt n, char *names[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* How far and from where the loop is to run on meshes that are going to be refined; keys that would have no effect stay unread, and so
+   are errors */
+static PetscErrorCode AbutSceneCyclesFromOptions_Private(AbutScene scene)
+{
+  PetscBool active;
+
+  PetscFunctionBegin;
+  PetscCall(PetscObjectTypeCompare((PetscObject)scene->snes, SNESDDACTIVE, &active));
+  PetscObjectOptionsBegin((PetscObject)scene);
+  if (active)
+    PetscCall(AbutOptionsReal(PetscOptionsObject, "-scene_loop_share", "Part of the estimated error that the loop may leave",
+                              &scene->loop_share, NULL));
+  PetscCall(AbutOptionsBool(PetscOptionsObject, "-scene_cold", "No trace from the last mesh", &scene->cold, NULL));
+  PetscOptionsEnd();
+  AbutCheckInput(scene->loop_share >= 0. && scene->loop_share < 1., PetscObjectComm((PetscObject)scene),
+                 "scene_loop_share: %g; give a number from 0 up and below 1, for example 0.3", (double)scene->loop_share);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
    AbutSceneSetFromOptions - Reads a scene and makes what it names
 
@@ -152,18 +171,11 @@ PetscErrorCode AbutSceneSetFromOptions(AbutScene scene)
     PetscCall(AbutOptionsReal(PetscOptionsObject, "-scene_eps_u", "Relative change of the traces at the end", &scene->eps_u, NULL));
   PetscCall(AbutOptionsReal(PetscOptionsObject, "-scene_tol", "Relative error in the energy norm to be reached", &scene->tol, &hastol));
   PetscCall(PetscOptionsString("-adaptor_type", "Type of the adaptor", NULL, type, type, sizeof(type), &adapts));
-  if ((adapts || hastol) && !scene->interleave) { /* else unread, and so an error */
-    PetscCall(AbutOptionsReal(PetscOptionsObject, "-scene_loop_share", "Part of the estimated error that the loop may leave",
-                              &scene->loop_share, NULL));
-    PetscCall(AbutOptionsBool(PetscOptionsObject, "-scene_cold", "No trace from the last mesh", &scene->cold, NULL));
-  }
   PetscCall(PetscOptionsString("-estimator_type", "Type of the estimator", NULL, type, type, sizeof(type), &estimates));
   PetscCall(AbutScenePlugins_Private(scene, PetscOptionsObject));
   PetscOptionsEnd();
   AbutCheckInput(!hastol || (scene->tol > 0. && scene->tol < 1.), comm,
                  "scene_tol: %g is not a relative error; give a number between 0 and 1, for example 0.01", (double)scene->tol);
-  AbutCheckInput(scene->loop_share >= 0. && scene->loop_share < 1., comm,
-                 "scene_loop_share: %g; give a number from 0 up and below 1, for example 0.3", (double)scene->loop_share);
   AbutCheckInput(scene->eps_u > 0., comm, "scene_eps_u: %g; give a positive number, for example 0.0015", (double)scene->eps_u);
   AbutCheckInput(nbodies > 0, comm,
                  "scene_bodies: missing; give the names of the bodies, or a scene file, for example examples/layers/layers.yml");
@@ -183,7 +195,10 @@ PetscErrorCode AbutSceneSetFromOptions(AbutScene scene)
   PetscCall(AbutSceneFreeNames_Private(npairs, pairs));
   PetscCall(AbutSceneFreeNames_Private(nprobes, probes));
   PetscCall(AbutInterfaceCreate(comm, scene->nbodies, scene->body, scene->npairs, scene->pair, &scene->iface));
-  if (scene->npairs) PetscCall(AbutSceneSolverFromOptions_Private(scene));
+  if (scene->npairs) {
+    PetscCall(AbutSceneSolverFromOptions_Private(scene));
+    if ((adapts || hastol) && !scene->interleave) PetscCall(AbutSceneCyclesFromOptions_Private(scene));
+  }
   PetscCall(AbutSceneErrorFromOptions_Private(scene, (PetscBool)(adapts || hastol), estimates));
   PetscCall(AbutSceneSetTolerance_Private(scene));
   AbutCheckInput(!scene->interleave || scene->adaptor, comm,

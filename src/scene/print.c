@@ -93,7 +93,7 @@ static PetscErrorCode AbutScenePrintCost_Private(AbutScene scene)
     assembly += seconds;
     assembled += cells;
   }
-  if (scene->snes && scene->cycle > 1)
+  if (scene->snes && !scene->interleave && scene->cycle > 1)
     PetscCall(PetscPrintf(comm, "sweeps: %" PetscInt_FMT " on %" PetscInt_FMT " meshes, worth %.1f of the last mesh\n", scene->sweepsbefore,
                           scene->cycle, (double)(scene->work / unknowns)));
   PetscCall(PetscPrintf(comm, "element matrices and their insertion: %.2f microseconds a cell (%" PetscInt_FMT " cells)\n",

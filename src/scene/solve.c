@@ -152,7 +152,11 @@ static PetscBool AbutSceneEnds_Private(AbutScene scene, PetscBool converged, Pet
     scene->status  = 2;
     return PETSC_TRUE;
   }
-  if (adapt != ABUT_ADAPT_DONE) {
+  if (scene->tol > 0. && adapt == ABUT_ADAPT_DONE &&
+      scene->discretisation + scene->errors.penalty + scene->errors.loop + scene->errors.linear > scene->tol) {
+    scene->verdict = "inconsistent"; /* the parts were chosen so that their sum stays below */
+    scene->status  = 2;
+  } else if (adapt != ABUT_ADAPT_DONE) {
     scene->verdict = adapt == ABUT_ADAPT_LEVEL ? "limit_level" : "limit_unknowns";
     scene->status  = 3;
   }

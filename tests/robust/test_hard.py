@@ -228,3 +228,26 @@ def test_contact_everywhere_on_meshes_that_do_not_match():
             exact = (4 * 25e-3 - GAP * 64 / 3) / (LAYERS + c / YOUNG)
             force, edge = record["pair.mid.force"], record["pair.mid.contact_edge"]
             assert relative(force, exact) < 1e-8 and edge == 4, (force, exact, edge)
+
+
+def test_a_loaded_block_whose_mesh_stays_while_the_other_one_adapts():
+    """The loads that contact has to balance are those of the body, not what it carried on the mesh before"""
+    blocks = """-scene_bodies lower,upper -scene_pairs mid -lower_mesh_box 0,0,4,1 -lower_mesh_cells 16,4 -upper_mesh_box 0,1,4,2 -upper_mesh_cells 16,4
+        -lower_material_young 2.1e5 -lower_material_poisson .3 -upper_material_young 2.1e5 -upper_material_poisson .3 -lower_bc_left_u1 0
+        -lower_bc_bottom_u2 0 -upper_bc_left_u1 0 -mid_pair_bodies upper,lower -mid_pair_sides bottom,top -mid_pair_gap 1e-3*x^2
+        -mid_pair_penalty 0""".split()
+    adapt = "-adaptor_type threshold -estimator_type zz -adaptor_threshold 0.15 -adaptor_max_level 2 -adaptor_bodies lower".split()
+    record = run(None, *blocks, *adapt, "-upper_bc_top_t2", "0-10-x", expect=None)
+    assert record.status in (0, 3) and record["cycles"] > 1, (record.status, record["verdict"])
+    assert abs(record["pair.mid.force"] / 48 - 1) < 1e-9, record["pair.mid.force"]  # the integral of 10 + x over 4
+
+
+def test_a_long_floating_block_is_solved_as_far_as_its_error_says():
+    """The forces that balance a load on a floating body are no measure of its contact: the tolerance is one of the bodies' energy"""
+    for length in (10, 50):
+        boxes = [f"-{body}_mesh_box 0,{y},{length},{y + 1} -{body}_mesh_cells {4 * length},4" for body, y in (("lower", 0), ("upper", 1))]
+        record = run(None, *" ".join(boxes).split(), *"""-scene_bodies lower,upper -scene_pairs mid -lower_material_young 2.1e5 -lower_material_poisson .3
+            -upper_material_young 2.1e5 -upper_material_poisson .3 -lower_bc_left_u1 0 -lower_bc_bottom_u2 0 -upper_bc_left_u1 0
+            -mid_pair_bodies upper,lower -mid_pair_sides bottom,top -mid_pair_gap 0 -mid_pair_penalty 0""".split(), "-upper_bc_top_t2", "0-1-2*sin(x)")
+        assert record["error.loop"] <= 2e-8, (length, record["error.loop"])
+        assert abs(record["pair.mid.force"] / (length + 2 - 2 * math.cos(length)) - 1) < 1e-5, (length, record["pair.mid.force"])

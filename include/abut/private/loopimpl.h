@@ -98,6 +98,8 @@ PETSC_EXTERN PetscErrorCode AbutInterfaceComply_Private(AbutInterface, AbutConta
 PETSC_EXTERN PetscErrorCode AbutContactModelLearn_Private(AbutContactModel, const PetscReal[], const PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutContactModelSolve_Private(AbutContactModel, const PetscReal[], const PetscReal[], PetscReal[], PetscReal[],
                                                           PetscInt *, PetscBool *);
+PETSC_INTERN void           AbutContactModelPressures_Private(const AbutContactModel, PetscInt, const PetscReal[], PetscReal *const[]);
+PETSC_INTERN void           AbutContactModelForces_Private(const AbutContactModel, PetscInt, PetscReal *const[], PetscReal[]);
 PETSC_INTERN PetscReal      AbutContactModelEnergy_Private(const AbutContactModel, const PetscReal[], const PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutContactModelDestroy_Private(AbutContactModel *);
 PETSC_EXTERN PetscLogEvent  ABUTINTERFACE_Sweep;
