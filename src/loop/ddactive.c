@@ -40,11 +40,22 @@ static PetscErrorCode AbutActiveDestroy_Private(AbutActive *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+#define ABUT_TOUCH 1e-10 /* of the largest displacement and gap */
+
+/* An open node that penetrates by round-off only touches: sides that meet exactly would else be tried again and again */
 static PetscErrorCode AbutActiveDefect_Private(AbutActive *s)
 {
+  const PetscReal *trace = s->iface->g;
+  PetscReal        size  = 0.;
+
   PetscFunctionBegin;
-  PetscCall(AbutInterfacePenetration_Private(s->iface, s->model, s->iface->g, s->r));
-  for (PetscInt i = 0; i < s->model->n; ++i) s->r[i] -= s->model->soft[i] * s->F[i];
+  PetscCall(AbutInterfacePenetration_Private(s->iface, s->model, trace, s->r));
+  for (PetscInt k = 0; k < s->iface->offset[2 * s->iface->npairs]; ++k) size = PetscMax(size, PetscAbsReal(trace[k]));
+  for (PetscInt i = 0; i < s->model->n; ++i) size = PetscMax(size, PetscAbsReal(s->model->open[i]));
+  for (PetscInt i = 0; i < s->model->n; ++i) {
+    s->r[i] -= s->model->soft[i] * s->F[i];
+    if (s->F[i] <= 0. && PetscAbsReal(s->r[i]) <= ABUT_TOUCH * size) s->r[i] = 0.;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

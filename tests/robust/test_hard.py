@@ -251,3 +251,10 @@ def test_a_long_floating_block_is_solved_as_far_as_its_error_says():
             -mid_pair_bodies upper,lower -mid_pair_sides bottom,top -mid_pair_gap 0 -mid_pair_penalty 0""".split(), "-upper_bc_top_t2", "0-1-2*sin(x)")
         assert record["error.loop"] <= 2e-8, (length, record["error.loop"])
         assert abs(record["pair.mid.force"] / (length + 2 - 2 * math.cos(length)) - 1) < 1e-5, (length, record["pair.mid.force"])
+
+
+def test_blocks_that_are_closed_by_exactly_their_gap_only_touch():
+    """What is left between the sides is round-off of the displacements, which no active set can settle"""
+    for c in 0, 0.05:
+        record = solve(layers(7, c, closure=1e-4, gap="1e-4"))
+        assert record["verdict"] == "converged" and record["pair.mid.force"] == 0 and record["sweeps"] <= 2, (c, record["pair.mid.force"])
