@@ -21,31 +21,6 @@ static AbutBody Make(MPI_Comm comm, CkField *field, int which, AbutShape shape)
   return body;
 }
 
-/* Largest distance of the stresses at three points of every cell from the field's, over the largest stress */
-static PetscReal StressError(AbutBody body, const CkField *field)
-{
-  const PetscReal xi[3][2] = {
-    {0.1, 0.1},
-    {0.8, 0.1},
-    {0.2, 0.7}
-  };
-  const AbutMeshTopology *t       = CkTopology(CkMeshOf(body));
-  PetscReal               most[2] = {0., 0.}, x[2], det, u[2], s[2][3];
-
-  for (PetscInt c = 0; c < t->ncells; ++c)
-    for (PetscInt q = 0; q < 3; ++q) {
-      CkOk(AbutBodyGetCellPoint(body, c, xi[q], x, &det));
-      CkOk(AbutBodyGetCellStress(body, c, xi[q], s[0]));
-      field->at(field, x, u, s[1]);
-      for (PetscInt i = 0; i < 3; ++i) {
-        most[0] = PetscMax(most[0], PetscAbsReal(s[0][i] - s[1][i]));
-        most[1] = PetscMax(most[1], PetscAbsReal(s[1][i]));
-      }
-    }
-  CkOk(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPIU_MAX, PETSC_COMM_WORLD));
-  return most[0] / most[1];
-}
-
 START_TEST(linear_displacements_are_exact_on_every_mesh)
 {
   static const char *const conditions[3][4] = {
@@ -64,7 +39,7 @@ START_TEST(linear_displacements_are_exact_on_every_mesh)
     CkGiveAll(body, &linear, c[0], c[1], c[2], c[3]);
     CkOk(AbutBodySolve(body, NULL));
     ck_assert_double_lt(CkNodalError(body, &linear), 1e-12);
-    ck_assert_double_lt(StressError(body, &linear),
+    ck_assert_double_lt(CkStressError(body, &linear),
                         _i % NMESHES == POINT ? 1e-10 : 1e-12); /* differences over cells a thousand times smaller */
     CkOk(AbutBodyGetLinearResidual(body, &residual));
     ck_assert_double_lt(residual, 1e-12);

@@ -204,3 +204,28 @@ static inline void CkErrors(AbutBody body, const CkField *field, PetscReal *l2, 
   *l2     = PetscSqrtReal(sum[0] / sum[1]);
   *energy = PetscSqrtReal(sum[2] / sum[3]);
 }
+
+/* Largest distance of the stresses at three points of every cell from the field's, over the largest stress */
+static inline PetscReal CkStressError(AbutBody body, const CkField *field)
+{
+  const PetscReal xi[3][2] = {
+    {0.1, 0.1},
+    {0.8, 0.1},
+    {0.2, 0.7}
+  };
+  const AbutMeshTopology *t       = CkTopology(CkMeshOf(body));
+  PetscReal               most[2] = {0., 0.}, x[2], det, u[2], s[2][3];
+
+  for (PetscInt c = 0; c < t->ncells; ++c)
+    for (PetscInt q = 0; q < 3; ++q) {
+      CkOk(AbutBodyGetCellPoint(body, c, xi[q], x, &det));
+      CkOk(AbutBodyGetCellStress(body, c, xi[q], s[0]));
+      field->at(field, x, u, s[1]);
+      for (PetscInt i = 0; i < 3; ++i) {
+        most[0] = PetscMax(most[0], PetscAbsReal(s[0][i] - s[1][i]));
+        most[1] = PetscMax(most[1], PetscAbsReal(s[1][i]));
+      }
+    }
+  CkOk(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPIU_MAX, PETSC_COMM_WORLD));
+  return most[0] / most[1];
+}
