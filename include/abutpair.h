@@ -42,6 +42,7 @@ PETSC_EXTERN PetscErrorCode AbutPairGetBodies(AbutPair, AbutBody[2], PetscInt[2]
 PETSC_EXTERN PetscErrorCode AbutPairSetTheta(AbutPair, PetscReal);
 PETSC_EXTERN PetscErrorCode AbutPairGetTheta(AbutPair, PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutPairGetCompliance(AbutPair, PetscReal[2]);
+PETSC_EXTERN PetscErrorCode AbutPairGetSharedEnds(AbutPair, PetscReal[2][2][2], PetscReal[2][2]);
 PETSC_EXTERN PetscErrorCode AbutPairGetSizes(AbutPair, PetscInt[2]);
 
 /* Traces u_n1, u_n2 at the nodes of the two sides (as ordered in AbutSide) -> nodal pressures; nodal pressures -> nodal normal forces on

@@ -114,3 +114,31 @@ PetscErrorCode AbutBodyChooseSolver_Private(AbutBody body, PetscInt n, PetscBool
   PetscCall(AbutBodyRenewPreconditioner_Private(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/*@
+   AbutBodyIsDirect - Whether the linear solver of a body is nothing but a factor, so that it has no tolerance
+
+   Not Collective
+
+   Input Parameter:
+.  body - the body
+
+   Output Parameter:
+.  direct - `PETSC_TRUE` for one application of Cholesky or LU
+
+   Level: developer
+
+.seealso: `AbutBodyGetKSP()`, `AbutBodyGetLinearError()`
+@*/
+PetscErrorCode AbutBodyIsDirect(AbutBody body, PetscBool *direct)
+{
+  PetscBool once;
+  PC        pc;
+
+  PetscFunctionBegin;
+  PetscCall(PetscObjectTypeCompare((PetscObject)body->ksp, KSPPREONLY, &once));
+  PetscCall(KSPGetPC(body->ksp, &pc));
+  PetscCall(PetscObjectTypeCompareAny((PetscObject)pc, direct, PCCHOLESKY, PCLU, ""));
+  if (!once) *direct = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -137,6 +137,36 @@ PetscErrorCode AbutBodyGetPointValues(AbutBody body, const PetscReal x[2], Petsc
 }
 
 /*@
+   AbutBodyGetWork - The work of all forces on a body: tractions, contact forces and reactions times their displacements
+
+   Collective
+
+   Input Parameter:
+.  body - the body, solved
+
+   Output Parameter:
+.  work - stress times area; in equilibrium twice the strain energy, and much cheaper than that of `AbutBodyGetEnergy()`
+
+   Level: intermediate
+
+.seealso: `AbutBodyGetEnergy()`
+@*/
+PetscErrorCode AbutBodyGetWork(AbutBody body, PetscReal *work)
+{
+  PetscReal w[3];
+  Vec       reaction;
+
+  PetscFunctionBegin;
+  PetscCall(VecDot(body->load, body->u, &w[0]));
+  PetscCall(VecDot(body->contact, body->u, &w[1]));
+  PetscCall(AbutBodyCreateReaction_Private(body, &reaction));
+  PetscCall(VecDot(reaction, body->u, &w[2]));
+  PetscCall(VecDestroy(&reaction));
+  *work = w[0] + w[1] + w[2];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
    AbutBodyGetEnergy - Strain energy of the last solve, and the work of all forces on its displacements
 
    Collective
@@ -146,17 +176,16 @@ PetscErrorCode AbutBodyGetPointValues(AbutBody body, const PetscReal x[2], Petsc
 
    Output Parameters:
 +  strain - 1/2 a(u,u) from the element matrices, stress times area
--  work   - tractions, contact forces and reactions times their displacements; in equilibrium twice the strain energy
+-  work   - that of `AbutBodyGetWork()`; in equilibrium twice the strain energy
 
    Level: intermediate
 
-.seealso: `AbutBodySolve()`
+.seealso: `AbutBodySolve()`, `AbutBodyGetWork()`
 @*/
 PetscErrorCode AbutBodyGetEnergy(AbutBody body, PetscReal *strain, PetscReal *work)
 {
   const AbutMeshTopology *t;
-  PetscReal               K[64], sum = 0., w[3];
-  Vec                     reaction;
+  PetscReal               K[64], sum = 0.;
 
   PetscFunctionBegin;
   PetscCall(AbutMeshGetTopology(body->mesh, &t));
@@ -169,11 +198,6 @@ PetscErrorCode AbutBodyGetEnergy(AbutBody body, PetscReal *strain, PetscReal *wo
         sum += 0.5 * K[n * i + j] * body->vertexu[2 * v[i / 2] + i % 2] * body->vertexu[2 * v[j / 2] + j % 2];
   }
   PetscCallMPI(MPI_Allreduce(&sum, strain, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
-  PetscCall(VecDot(body->load, body->u, &w[0]));
-  PetscCall(VecDot(body->contact, body->u, &w[1]));
-  PetscCall(AbutBodyCreateReaction_Private(body, &reaction));
-  PetscCall(VecDot(reaction, body->u, &w[2]));
-  PetscCall(VecDestroy(&reaction));
-  *work = w[0] + w[1] + w[2];
+  PetscCall(AbutBodyGetWork(body, work));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -10,7 +10,6 @@ typedef struct {
   AbutContactModel model;
   PetscReal       *F, *r;     /* [n] contact forces acting; penetrations of the bodies as they are, less soft F */
   PetscReal       *d, *q, *a; /* [n] change of F, penetration it takes away; [m] change of the free motions */
-  Vec             *force, *w; /* [bodies] nodal forces of d, displacements they make */
   PetscBool        balanced;  /* F balances the loads along the free motions */
 } AbutActive;
 
@@ -20,22 +19,12 @@ static PetscErrorCode AbutActiveCreate_Private(AbutInterface f, AbutActive *s)
   s->iface = f;
   PetscCall(AbutInterfaceGetModel_Private(f, &s->model));
   PetscCall(PetscCalloc5(s->model->n, &s->F, s->model->n, &s->r, s->model->n, &s->d, s->model->n, &s->q, s->model->m, &s->a));
-  PetscCall(PetscMalloc2(f->nbodies, &s->force, f->nbodies, &s->w));
-  for (PetscInt b = 0; b < f->nbodies; ++b) {
-    PetscCall(AbutBodyCreateVec(f->body[b], &s->force[b]));
-    PetscCall(AbutBodyCreateVec(f->body[b], &s->w[b]));
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode AbutActiveDestroy_Private(AbutActive *s)
 {
   PetscFunctionBegin;
-  for (PetscInt b = 0; b < s->iface->nbodies; ++b) {
-    PetscCall(VecDestroy(&s->force[b]));
-    PetscCall(VecDestroy(&s->w[b]));
-  }
-  PetscCall(PetscFree2(s->force, s->w));
   PetscCall(PetscFree5(s->F, s->r, s->d, s->q, s->a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -110,10 +99,10 @@ static PetscErrorCode AbutActiveWhole_Private(AbutActive *s, PetscReal *whole)
 
   PetscFunctionBegin;
   for (PetscInt b = 0; b < s->iface->nbodies; ++b) {
-    PetscReal strain, work;
+    PetscReal work;
 
-    PetscCall(AbutBodyGetEnergy(s->iface->body[b], &strain, &work));
-    own += 2. * PetscMax(0., strain);
+    PetscCall(AbutBodyGetWork(s->iface->body[b], &work)); /* twice the strain energy */
+    own += PetscMax(0., work);
   }
   for (PetscInt i = 0; i < s->model->n; ++i) own += s->model->soft[i] * PetscSqr(s->F[i]);
   *whole = PetscMin(own, AbutContactModelEnergy_Private(s->model, s->model->soft, s->F));
@@ -154,7 +143,7 @@ static PetscErrorCode AbutActiveStep_Private(AbutActive *s)
   PetscReal        slope = 0., curvature = 0., step, furthest = PETSC_MAX_REAL;
 
   PetscFunctionBegin;
-  PetscCall(AbutInterfaceComply_Private(f, model, s->d, s->force, s->w, s->q));
+  PetscCall(AbutInterfaceComply_Private(f, model, s->d, s->q));
   ++f->sweeps;
   if (f->linearfailed) PetscFunctionReturn(PETSC_SUCCESS); /* the bodies stay as they were, which is the best there is */
   for (PetscInt i = 0; i < model->n; ++i) {
@@ -165,9 +154,9 @@ static PetscErrorCode AbutActiveStep_Private(AbutActive *s)
   step = s->balanced && curvature > 0. ? PetscMin(PetscMax(0., slope / curvature), furthest) : 1.;
   for (PetscInt i = 0; i < model->n; ++i) s->F[i] = PetscMax(0., s->F[i] + step * s->d[i]);
   for (PetscInt b = 0; b < f->nbodies; ++b) {
-    PetscCall(VecScale(s->force[b], step));
-    PetscCall(VecScale(s->w[b], step));
-    PetscCall(AbutBodyUpdate(f->body[b], s->force[b], s->w[b]));
+    PetscCall(VecScale(model->force[b], step));
+    PetscCall(VecScale(model->w[b], step));
+    PetscCall(AbutBodyUpdate(f->body[b], model->force[b], model->w[b]));
   }
   PetscCall(AbutInterfaceTraces_Private(f, f->u, f->g));
   PetscCall(AbutContactModelLearn_Private(model, s->d, s->q));
@@ -223,12 +212,6 @@ static PetscErrorCode SNESSolve_DDActive(SNES snes)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode SNESSetUp_DDActive(PETSC_UNUSED SNES snes)
-{
-  PetscFunctionBegin;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode SNESView_DDActive(PETSC_UNUSED SNES snes, PetscViewer viewer)
 {
   PetscBool ascii;
@@ -275,7 +258,6 @@ M*/
 PetscErrorCode SNESCreate_DDActive(SNES snes)
 {
   PetscFunctionBegin;
-  snes->ops->setup                  = SNESSetUp_DDActive;
   snes->ops->view                   = SNESView_DDActive;
   snes->ops->solve                  = SNESSolve_DDActive;
   snes->usesksp                     = PETSC_FALSE;

@@ -4,20 +4,6 @@
 
 #define ABUT_SAFETY 1.25 /* of the penalty's part: see the note of AbutInterfaceGetErrors() */
 
-/* Energy v'(S + soft)v of contact forces v; soft may be NULL: the square of the energy norm of the displacements they make */
-PetscReal AbutContactModelEnergy_Private(const AbutContactModel model, const PetscReal soft[], const PetscReal v[])
-{
-  PetscReal e = 0.;
-
-  for (PetscInt i = 0; i < model->n; ++i) {
-    PetscReal Sv = soft ? soft[i] * v[i] : 0.;
-
-    for (PetscInt j = 0; j < model->n; ++j) Sv += model->S[i * model->n + j] * v[j];
-    e += v[i] * Sv;
-  }
-  return PetscMax(0., e);
-}
-
 /* What the model would still change of the contact forces F, with its penalty or with another one. The bodies are as g says, whatever
    brought them there. */
 static PetscErrorCode AbutInterfaceAsk_Private(AbutInterface f, AbutContactModel model, PetscReal soft[], const PetscReal F[],

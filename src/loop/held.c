@@ -41,37 +41,6 @@ static PetscErrorCode AbutJumpsDestroy_Private(AbutJumps *j)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The two ends of what the sides of a pair share, each seen from both sides: point[side][end] */
-static PetscErrorCode AbutPairShared_Private(AbutPair pair, PetscReal point[2][2][2], PetscReal normal[2][2])
-{
-  AbutBody  body[2];
-  PetscInt  side[2];
-  PetscReal ends[2][4], at[2][2], tangent[2], length, from = PETSC_MIN_REAL, to = PETSC_MAX_REAL;
-
-  PetscFunctionBegin;
-  PetscCall(AbutPairGetBodies(pair, body, side));
-  for (PetscInt s = 0; s < 2; ++s) {
-    AbutMesh mesh;
-
-    PetscCall(AbutBodyGetMesh(body[s], &mesh));
-    PetscCall(AbutMeshGetSideEnds(mesh, side[s], ends[s], normal[s]));
-  }
-  for (PetscInt d = 0; d < 2; ++d) tangent[d] = ends[0][2 + d] - ends[0][d];
-  length = PetscSqrtReal(tangent[0] * tangent[0] + tangent[1] * tangent[1]);
-  for (PetscInt s = 0; s < 2; ++s) {
-    for (PetscInt e = 0; e < 2; ++e) at[s][e] = (ends[s][2 * e] * tangent[0] + ends[s][2 * e + 1] * tangent[1]) / length;
-    from = PetscMax(from, PetscMin(at[s][0], at[s][1]));
-    to   = PetscMin(to, PetscMax(at[s][0], at[s][1]));
-  }
-  for (PetscInt s = 0; s < 2; ++s)
-    for (PetscInt e = 0; e < 2; ++e) {
-      const PetscReal z = ((e ? to : from) - at[s][0]) / (at[s][1] - at[s][0]);
-
-      for (PetscInt d = 0; d < 2; ++d) point[s][e][d] = (1. - z) * ends[s][d] + z * ends[s][2 + d];
-    }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The motion at both corners of the body's box, by which a turn is known, and its size there: for a turn that of the box */
 static PetscErrorCode AbutMotionAtCorners_Private(AbutBody body, PetscInt mode, PetscReal u[2][2], PetscBool *turn, PetscReal *scale)
 {
@@ -93,7 +62,7 @@ static PetscErrorCode AbutJumpsFill_Private(AbutInterface f, AbutJumps *j)
   for (PetscInt t = 0; t < 2 * f->npairs; ++t) {
     PetscReal point[2][2][2], normal[2][2];
 
-    PetscCall(AbutPairShared_Private(f->pair[t / 2], point, normal));
+    PetscCall(AbutPairGetSharedEnds(f->pair[t / 2], point, normal));
     for (PetscInt c = 0; c < j->columns; ++c) {
       PetscReal corner[2][2], scale, u[2];
       PetscBool turn;

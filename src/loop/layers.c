@@ -191,11 +191,10 @@ static PetscErrorCode AbutLayerSides_Private(AbutInterface f, AbutContactModel m
   PetscCall(AbutBodyGetMaterial(bodies[t % 2], &young, &poisson));
   PetscCall(PetscMalloc1(m[t].n, &w));
   for (PetscInt k = 0; k < m[t].n; ++k) {
-    const PetscReal compliance = 2. * (1. - poisson * poisson) / young;
-    const PetscReal xi         = k < m[r].n ? 0.5 * (m[t].xi[k] + m[r].xi[k]) : m[t].xi[k];
-    const PetscReal squeeze    = AbutLayerSqueeze_Private(compliance, xi, 0.5 * height);
-    const PetscReal bend       = AbutLayerBend_Private(compliance, PetscMax(xi, 0.5 * PETSC_PI / m[t].length),
-                                                       0.5 * height); /* moving resists nothing */
+    const PetscReal compliance = 2. * (1. - poisson * poisson) / young, longest = 0.5 * PETSC_PI / m[t].length;
+    const PetscReal xi      = k < m[r].n ? 0.5 * (m[t].xi[k] + m[r].xi[k]) : m[t].xi[k];
+    const PetscReal squeeze = AbutLayerSqueeze_Private(compliance, xi, 0.5 * height);
+    const PetscReal bend    = AbutLayerBend_Private(compliance, PetscMax(xi, longest), 0.5 * height); /* moving resists nothing */
 
     if (condition == ABUT_DISPLACEMENT) w[k] = AbutLayerSqueeze_Private(compliance, xi, height);
     else w[k] = 0.5 * (othersides[r % 2] == far ? squeeze - bend : squeeze + bend);

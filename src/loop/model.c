@@ -121,6 +121,11 @@ PetscErrorCode AbutContactModelDestroy_Private(AbutContactModel *model)
   PetscCall(PetscFree((*model)->S));
   PetscCall(PetscFree4((*model)->G, (*model)->e, (*model)->owner, (*model)->mode));
   PetscCall(PetscFree2((*model)->factor, (*model)->X));
+  for (PetscInt b = 0; b < (*model)->nbodies; ++b) {
+    PetscCall(VecDestroy(&(*model)->force[b]));
+    PetscCall(VecDestroy(&(*model)->w[b]));
+  }
+  PetscCall(PetscFree2((*model)->force, (*model)->w));
   PetscCall(PetscFree(*model));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -156,18 +161,44 @@ void AbutContactModelForces_Private(const AbutContactModel model, PetscInt npair
     for (PetscInt c = model->first[i]; c < model->first[i + 1]; ++c) F[c] = p[i][model->node[c]] * model->D[c];
 }
 
-/* q = S d by one solve of every body with the forces d of the contact nodes alone: force[b] are the nodal forces, w[b] the
-   displacements. The bodies' own displacements stay. */
-PetscErrorCode AbutInterfaceComply_Private(AbutInterface f, AbutContactModel model, const PetscReal d[], Vec force[], Vec w[],
-                                           PetscReal q[])
+/* Energy v'(S + soft)v of contact forces v; soft may be NULL: the square of the energy norm of the displacements they make */
+PetscReal AbutContactModelEnergy_Private(const AbutContactModel model, const PetscReal soft[], const PetscReal v[])
+{
+  PetscReal e = 0.;
+
+  for (PetscInt i = 0; i < model->n; ++i) {
+    PetscReal Sv = soft ? soft[i] * v[i] : 0.;
+
+    for (PetscInt j = 0; j < model->n; ++j) Sv += model->S[i * model->n + j] * v[j];
+    e += v[i] * Sv;
+  }
+  return PetscMax(0., e);
+}
+
+static PetscErrorCode AbutContactModelVectors_Private(AbutInterface f, AbutContactModel model)
+{
+  PetscFunctionBegin;
+  model->nbodies = f->nbodies;
+  PetscCall(PetscMalloc2(f->nbodies, &model->force, f->nbodies, &model->w));
+  for (PetscInt b = 0; b < f->nbodies; ++b) {
+    PetscCall(AbutBodyCreateVec(f->body[b], &model->force[b]));
+    PetscCall(AbutBodyCreateVec(f->body[b], &model->w[b]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* q = S d by one solve of every body with the forces d of the contact nodes alone, which leaves model->force and model->w. The bodies' own
+   displacements stay. */
+PetscErrorCode AbutInterfaceComply_Private(AbutInterface f, AbutContactModel model, const PetscReal d[], PetscReal q[])
 {
   PetscReal *trace, **p;
 
   PetscFunctionBegin;
+  if (!model->w) PetscCall(AbutContactModelVectors_Private(f, model));
   PetscCall(PetscMalloc2(f->offset[2 * f->npairs], &trace, f->npairs, &p));
   for (PetscInt i = 0; i < f->npairs; ++i) PetscCall(PetscCalloc1(f->offset[2 * i + 2] - f->offset[2 * i], &p[i]));
   AbutContactModelPressures_Private(model, f->npairs, d, p);
-  PetscCall(AbutInterfaceIncrement_Private(f, p, force, w, trace));
+  PetscCall(AbutInterfaceIncrement_Private(f, p, model->force, model->w, trace));
   PetscCall(AbutInterfacePenetration_Private(f, model, trace, q));
   for (PetscInt c = 0; c < model->n; ++c) q[c] = model->open[c] - q[c];
   for (PetscInt i = 0; i < f->npairs; ++i) PetscCall(PetscFree(p[i]));

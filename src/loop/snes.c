@@ -69,16 +69,12 @@ static PetscErrorCode AbutInterfaceInexactness_Private(AbutInterface f, PetscRea
   for (PetscInt b = 0; b < f->nbodies; ++b) {
     PetscReal strain, work, error, young, poisson, umax;
     PetscBool direct;
-    KSP       ksp;
-    PC        pc;
 
     PetscCall(AbutBodyGetEnergy(f->body[b], &strain, &work));
     PetscCall(AbutBodyGetMaterial(f->body[b], &young, &poisson));
     PetscCall(VecNorm(f->u[b], NORM_INFINITY, &umax));
     energy2 += 2. * strain + 1e-3 * young * umax * umax;
-    PetscCall(AbutBodyGetKSP(f->body[b], &ksp));
-    PetscCall(KSPGetPC(ksp, &pc));
-    PetscCall(PetscObjectTypeCompareAny((PetscObject)pc, &direct, PCCHOLESKY, PCLU, ""));
+    PetscCall(AbutBodyIsDirect(f->body[b], &direct));
     if (direct) continue;
     PetscCall(AbutBodyGetLinearError(f->body[b], &error));
     error2 += error * error;

@@ -32,9 +32,8 @@ PetscErrorCode AbutInterfaceComputeSpectrum_Private(AbutInterface f, PETSC_UNUSE
 /* W S W on all contact nodes, S the compliance of all bodies, W_i^2 = D_i/theta: similar to dG, but symmetric */
 typedef struct {
   AbutInterface    iface;
-  AbutContactModel model;     /* its nodes, not its compliance */
-  PetscReal       *d, *q;     /* [n] forces on all contact nodes and what they take from the penetrations, on every rank */
-  Vec             *force, *w; /* [bodies] */
+  AbutContactModel model; /* its nodes, not its compliance */
+  PetscReal       *d, *q; /* [n] forces on all contact nodes and what they take from the penetrations, on every rank */
 } AbutSpectrum;
 
 PetscErrorCode AbutInterfaceCheckSpectrum_Private(PETSC_UNUSED AbutInterface f)
@@ -53,22 +52,7 @@ static PetscErrorCode AbutSpectrumCreate_Private(AbutInterface f, AbutSpectrum *
   PetscFunctionBegin;
   s->iface = f;
   PetscCall(AbutInterfaceGetModel_Private(f, &s->model));
-  PetscCall(PetscMalloc4(s->model->n, &s->d, s->model->n, &s->q, f->nbodies, &s->force, f->nbodies, &s->w));
-  for (PetscInt b = 0; b < f->nbodies; ++b) {
-    PetscCall(AbutBodyCreateVec(f->body[b], &s->force[b]));
-    PetscCall(AbutBodyCreateVec(f->body[b], &s->w[b]));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode AbutSpectrumDestroy_Private(AbutSpectrum *s)
-{
-  PetscFunctionBegin;
-  for (PetscInt b = 0; b < s->iface->nbodies; ++b) {
-    PetscCall(VecDestroy(&s->force[b]));
-    PetscCall(VecDestroy(&s->w[b]));
-  }
-  PetscCall(PetscFree4(s->d, s->q, s->force, s->w));
+  PetscCall(PetscMalloc2(s->model->n, &s->d, s->model->n, &s->q));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -89,7 +73,7 @@ static PetscErrorCode AbutSpectrumMult_Private(Mat A, Vec v, Vec y)
   PetscCall(VecRestoreArrayRead(v, &a));
   PetscCall(PetscMPIIntCast(s->model->n, &count));
   PetscCallMPI(MPI_Bcast(s->d, count, MPIU_REAL, 0, PetscObjectComm((PetscObject)s->iface)));
-  PetscCall(AbutInterfaceComply_Private(s->iface, s->model, s->d, s->force, s->w, s->q));
+  PetscCall(AbutInterfaceComply_Private(s->iface, s->model, s->d, s->q));
   ++s->iface->startsweeps;
   PetscCall(VecGetArrayWrite(y, &b));
   for (PetscInt c = 0; c < n; ++c) b[c] = s->iface->linearfailed ? 0. : AbutSpectrumWeight_Private(s, c) * s->q[c];
@@ -162,7 +146,7 @@ PetscErrorCode AbutInterfaceComputeSpectrum_Private(AbutInterface f, PetscReal *
     PetscCall(VecDestroy(&v));
     PetscCall(MatDestroy(&A));
   }
-  PetscCall(AbutSpectrumDestroy_Private(&s));
+  PetscCall(PetscFree2(s.d, s.q));
   *largest = 1. + PetscMax(0., PetscRealPart(value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

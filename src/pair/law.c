@@ -18,19 +18,12 @@
 @*/
 PetscErrorCode AbutPairGetGap(AbutPair pair, const PetscReal x[2], PetscReal *gap)
 {
-  AbutMesh  mesh;
-  PetscReal ends[2][4], normal[2][2];
-
   PetscFunctionBegin;
   if (pair->gap) {
     PetscCall(AbutExpressionEvaluate(pair->gap, x, gap));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  for (PetscInt s = 0; s < 2; ++s) {
-    PetscCall(AbutBodyGetMesh(pair->body[s], &mesh));
-    PetscCall(AbutMeshGetSideEnds(mesh, pair->side[s], ends[s], normal[s]));
-  }
-  *gap = (ends[1][0] - ends[0][0]) * normal[0][0] + (ends[1][1] - ends[0][1]) * normal[0][1];
+  PetscCall(AbutPairGetDistance_Private(pair, gap));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -91,46 +91,6 @@ static PetscErrorCode AbutPairFindBodies_Private(AbutPair pair, const char text[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The two sides must lie against each other: opposite normals, a common part, and a distance that is small, or none where the gap is
-   given */
-static PetscErrorCode AbutPairCheckFacing_Private(AbutPair pair)
-{
-  MPI_Comm    comm = PetscObjectComm((PetscObject)pair);
-  const char *name = ((PetscObject)pair)->name, *body[2];
-  PetscReal   ends[2][4], normal[2][2], tangent[2], from[2], to[2], length, distance, common;
-
-  PetscFunctionBegin;
-  for (PetscInt s = 0; s < 2; ++s) {
-    AbutMesh mesh;
-
-    PetscCall(AbutBodyGetName(pair->body[s], &body[s]));
-    PetscCall(AbutBodyGetMesh(pair->body[s], &mesh));
-    PetscCall(AbutMeshGetSideEnds(mesh, pair->side[s], ends[s], normal[s]));
-  }
-  for (PetscInt d = 0; d < 2; ++d) tangent[d] = ends[0][2 + d] - ends[0][d];
-  length = PetscSqrtReal(tangent[0] * tangent[0] + tangent[1] * tangent[1]);
-  for (PetscInt s = 0; s < 2; ++s) {
-    const PetscReal a = (ends[s][0] * tangent[0] + ends[s][1] * tangent[1]) / length,
-                    b = (ends[s][2] * tangent[0] + ends[s][3] * tangent[1]) / length;
-
-    from[s] = PetscMin(a, b);
-    to[s]   = PetscMax(a, b);
-  }
-  common   = PetscMin(to[0], to[1]) - PetscMax(from[0], from[1]);
-  distance = (ends[1][0] - ends[0][0]) * normal[0][0] + (ends[1][1] - ends[0][1]) * normal[0][1];
-  AbutCheckInput(normal[0][0] * normal[1][0] + normal[0][1] * normal[1][1] < -0.999 && common > 1e-9 * length &&
-                   PetscAbsReal(distance) < 0.1 * length,
-                 comm,
-                 "%s_pair_sides: bodies \"%s\" and \"%s\" share no part of these sides (distance %g); give sides that lie against each "
-                 "other, for example bottom,top",
-                 name, body[0], body[1], (double)distance);
-  AbutCheckInput(!pair->gap || PetscAbsReal(distance) < 1e-6 * length, comm,
-                 "%s_pair_gap: given, but the sides of \"%s\" and \"%s\" are %g apart; bring the boxes together, or leave the gap out to "
-                 "use this distance",
-                 name, body[0], body[1], (double)distance);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode AbutPairSetTheta_Private(AbutPair pair)
 {
   MPI_Comm    comm = PetscObjectComm((PetscObject)pair);

@@ -13,20 +13,19 @@ PetscErrorCode AbutScenePrintHeader_Private(AbutScene scene)
 
 PetscErrorCode AbutScenePrintCycle_Private(AbutScene scene, PetscInt nmarked)
 {
-  PetscInt  unknowns = 0, cells = 0, sweeps = scene->cycle + 1;
+  PetscInt  unknowns, cells = 0, sweeps = scene->cycle + 1;
   PetscReal worst           = -1.;
   char      estimate[2][32] = {"-", "-"};
 
   PetscFunctionBegin;
+  PetscCall(AbutSceneGetUnknowns_Private(scene, &unknowns));
   for (PetscInt b = 0; b < scene->nbodies; ++b) {
     AbutMesh  mesh;
-    PetscInt  n, c;
+    PetscInt  c;
     PetscReal eta, eta_max;
 
     PetscCall(AbutBodyGetMesh(scene->body[b], &mesh));
-    PetscCall(AbutBodyGetSize(scene->body[b], &n));
     PetscCall(AbutMeshGetCellCount(mesh, &c));
-    unknowns += n;
     cells += c;
     if (!scene->eta[b]) continue;
     PetscCall(AbutEstimatorGetNorms(scene->body[b], scene->eta[b], &eta, &eta_max));
@@ -76,7 +75,7 @@ static PetscErrorCode AbutScenePrintCost_Private(AbutScene scene)
   MPI_Comm        comm      = PetscObjectComm((PetscObject)scene);
   const PetscReal total     = scene->mark - scene->begun;
   PetscReal       assembly  = 0.;
-  PetscInt        assembled = 0, unknowns = 0;
+  PetscInt        assembled = 0, unknowns;
 
   PetscFunctionBegin;
   PetscCall(PetscPrintf(comm, "seconds: %.2f = set-up %.2f + sweeps %.2f + estimate %.2f (%.0f %%) + adapt %.2f + output %.2f\n",
@@ -85,14 +84,13 @@ static PetscErrorCode AbutScenePrintCost_Private(AbutScene scene)
                         scene->seconds[ABUT_TIME_OUTPUT]));
   for (PetscInt b = 0; b < scene->nbodies; ++b) {
     PetscReal seconds;
-    PetscInt  cells, n;
+    PetscInt  cells;
 
-    PetscCall(AbutBodyGetSize(scene->body[b], &n));
     PetscCall(AbutBodyGetAssemblyCost(scene->body[b], &seconds, &cells));
-    unknowns += n;
     assembly += seconds;
     assembled += cells;
   }
+  PetscCall(AbutSceneGetUnknowns_Private(scene, &unknowns));
   if (scene->snes && !scene->interleave && scene->cycle > 1)
     PetscCall(PetscPrintf(comm, "sweeps: %" PetscInt_FMT " on %" PetscInt_FMT " meshes, worth %.1f of the last mesh\n", scene->sweepsbefore,
                           scene->cycle, (double)(scene->work / unknowns)));

@@ -159,19 +159,28 @@ static PetscErrorCode AbutSceneRecordProbes_Private(AbutScene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Sweeps, and how many of the present meshes they are worth: those of small meshes cost less */
-static PetscErrorCode AbutSceneRecordSweeps_Private(AbutScene scene)
+/* Unknowns of all bodies on the present meshes */
+PetscErrorCode AbutSceneGetUnknowns_Private(AbutScene scene, PetscInt *unknowns)
 {
-  PetscInt sweeps = scene->cycle + 1, start = 0, unknowns = 0;
-
   PetscFunctionBegin;
-  if (scene->snes) PetscCall(AbutInterfaceGetSweeps(scene->iface, &sweeps, &start));
+  *unknowns = 0;
   for (PetscInt b = 0; b < scene->nbodies; ++b) {
     PetscInt n;
 
     PetscCall(AbutBodyGetSize(scene->body[b], &n));
-    unknowns += n;
+    *unknowns += n;
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Sweeps, and how many of the present meshes they are worth: those of small meshes cost less */
+static PetscErrorCode AbutSceneRecordSweeps_Private(AbutScene scene)
+{
+  PetscInt sweeps = scene->cycle + 1, start = 0, unknowns;
+
+  PetscFunctionBegin;
+  if (scene->snes) PetscCall(AbutInterfaceGetSweeps(scene->iface, &sweeps, &start));
+  PetscCall(AbutSceneGetUnknowns_Private(scene, &unknowns));
   scene->work += (PetscReal)(sweeps - scene->sweepsbefore) * unknowns;
   PetscCall(AbutRecorderSetInt(scene->recorder, "sweeps", sweeps));
   PetscCall(AbutRecorderSetInt(scene->recorder, "sweeps_start", start));

@@ -117,8 +117,8 @@ static PetscErrorCode AbutSceneAdapt_Private(AbutScene scene, PetscBool *const m
   if (scene->snes) {
     if (!scene->cold) PetscCall(AbutInterfaceKeepTrace(scene->iface, scene->x));
     PetscCall(VecDestroy(&scene->x));
-    PetscCall(SNESDestroy(
-      &scene->snes)); /* a new solver: what the old one remembers belongs to the old mesh, and not every type forgets it in SNESReset() */
+    /* a new solver: what the old one remembers belongs to the old mesh, and not every type forgets it in SNESReset() */
+    PetscCall(SNESDestroy(&scene->snes));
     PetscCall(AbutSceneSolverFromOptions_Private(scene));
   }
   for (PetscInt b = 0; b < scene->nbodies; ++b) {

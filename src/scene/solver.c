@@ -76,9 +76,8 @@ PetscErrorCode AbutSceneCheckLoop_Private(AbutScene scene)
     PetscCall(AbutPairGetName(scene->pair[i], &name));
     PetscCall(AbutPairGetTheta(scene->pair[i], &theta));
     AbutCheckInput(theta > 0., comm,
-                   "snes_type: %s needs a penalty, and that of %s is 0, exact contact; give a positive %s_pair_penalty, for example 0.05, "
-                   "or "
-                   "-snes_type ddactive",
+                   "snes_type: %s needs a penalty, and that of %s is 0, exact contact; give a positive %s_pair_penalty, for example "
+                   "0.05, or -snes_type ddactive",
                    type, name, name);
   }
   for (PetscInt b = 0; b < scene->nbodies; ++b) {
@@ -107,8 +106,8 @@ PetscErrorCode AbutSceneSolverFromOptions_Private(AbutScene scene)
   PetscCall(AbutLoopRegisterAll());
   PetscCall(SNESCreate(comm, &scene->snes));
   PetscCall(SNESSetApplicationContext(scene->snes, scene->iface));
-  PetscCall(SNESSetTolerances(scene->snes, 0., AbutSceneLoopTolerance_Private(scene), 0., 10000,
-                              1000000000));                 /* no absolute tolerance: it would depend on the units */
+  /* no absolute tolerance: it would depend on the units */
+  PetscCall(SNESSetTolerances(scene->snes, 0., AbutSceneLoopTolerance_Private(scene), 0., 10000, 1000000000));
   PetscCall(SNESSetDivergenceTolerance(scene->snes, 1e10)); /* a trace without contact may be a thousandth of one with too much of it */
   if (scene->interleave) PetscCall(PetscStrncpy(type, SNESDDNEUMANN, sizeof(type))); /* a sweep a cycle is the paper's */
   PetscCall(PetscOptionsGetString(NULL, NULL, "-snes_type", type, sizeof(type), &named));
@@ -124,9 +123,8 @@ PetscErrorCode AbutSceneSolverFromOptions_Private(AbutScene scene)
   AbutCheckInput(!scene->interleave || !strcmp(type, SNESDDNEUMANN), comm,
                  "scene_interleave: needs -snes_type ddneumann; %s keeps a history that a new mesh makes void", type);
   if (scene->interleave) PetscCall(AbutSceneCheckInterleave_Private(scene));
-  if (named ||
-      strcmp(type,
-             SNESDDACTIVE)) { /* a scene of the paper's loop may be run with -snes_type ddactive; by default these keys would do nothing */
+  /* a scene of the paper's loop may be run with -snes_type ddactive; by default its keys would do nothing, and so stay unread */
+  if (named || strcmp(type, SNESDDACTIVE)) {
     PetscOptionsBegin(comm, NULL, "Start of the loop", NULL);
     PetscCall(AbutOptionsEnum(PetscOptionsObject, "-snes_ddneumann_start", "First trace", AbutStarts, &scene->start, NULL));
     PetscOptionsEnd();
@@ -137,8 +135,8 @@ PetscErrorCode AbutSceneSolverFromOptions_Private(AbutScene scene)
   else PetscCall(AbutSceneReadSolver_Private(scene));
   /* interleaved, a cycle is one bare iteration, and the scene itself tests the change of the traces */
   if (scene->interleave) PetscCall(SNESSetTolerances(scene->snes, 0., PETSC_DEFAULT, 0., 1, PETSC_DEFAULT));
-  PetscCall(SNESSetNormSchedule(scene->snes,
-                                scene->interleave ? SNES_NORM_NONE : SNES_NORM_ALWAYS)); /* without norms there would be no stop test */
+  /* without norms there would be no stop test */
+  PetscCall(SNESSetNormSchedule(scene->snes, scene->interleave ? SNES_NORM_NONE : SNES_NORM_ALWAYS));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

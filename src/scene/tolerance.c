@@ -76,7 +76,7 @@ static PetscErrorCode AbutSceneGetKSP_Private(AbutScene scene, PetscInt b, KSP *
 
   PetscFunctionBegin;
   PetscCall(AbutBodyGetKSP(scene->body[b], ksp));
-  PetscCall(PetscObjectTypeCompare((PetscObject)*ksp, KSPPREONLY, &direct));
+  PetscCall(AbutBodyIsDirect(scene->body[b], &direct));
   PetscCall(KSPGetOptionsPrefix(*ksp, &prefix));
   PetscCall(PetscOptionsHasName(NULL, prefix, "-ksp_rtol", given));
   *iterates = (PetscBool)!direct;

@@ -21,6 +21,8 @@ typedef struct {
   PetscReal *G, *e;        /* [m*n] penetrations by unit motions; [m] resultants of the loads along them */
   PetscInt  *owner, *mode; /* [m] whose motion, and its number there */
   PetscReal *factor, *X;   /* [n*n], [(m+1)*n] work */
+  PetscInt   nbodies;      /* once AbutInterfaceComply_Private() has been called */
+  Vec       *force, *w;    /* [nbodies] of its last call: nodal forces on the bodies, displacements they make */
   PetscReal *b;            /* [n] work */
   PetscInt  *active;       /* [n] work */
 } *AbutContactModel;
@@ -94,7 +96,7 @@ PETSC_INTERN PetscErrorCode AbutInterfaceComputeSpectrum_Private(AbutInterface, 
 PETSC_EXTERN PetscErrorCode AbutInterfaceGetModel_Private(AbutInterface, AbutContactModel *);
 PETSC_INTERN PetscErrorCode AbutInterfaceLayers_Private(AbutInterface, AbutContactModel);
 PETSC_INTERN PetscErrorCode AbutInterfacePenetration_Private(AbutInterface, AbutContactModel, const PetscReal[], PetscReal[]);
-PETSC_EXTERN PetscErrorCode AbutInterfaceComply_Private(AbutInterface, AbutContactModel, const PetscReal[], Vec[], Vec[], PetscReal[]);
+PETSC_EXTERN PetscErrorCode AbutInterfaceComply_Private(AbutInterface, AbutContactModel, const PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutContactModelLearn_Private(AbutContactModel, const PetscReal[], const PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutContactModelSolve_Private(AbutContactModel, const PetscReal[], const PetscReal[], PetscReal[], PetscReal[],
                                                           PetscInt *, PetscBool *);

@@ -38,5 +38,7 @@ struct _p_AbutPair {
   const AbutSide *nodes[2];
 };
 
+PETSC_INTERN PetscErrorCode AbutPairCheckFacing_Private(AbutPair);
+PETSC_INTERN PetscErrorCode AbutPairGetDistance_Private(AbutPair, PetscReal *);
 PETSC_INTERN PetscErrorCode AbutPairMortar_Private(AbutPair);
 PETSC_INTERN PetscErrorCode AbutPairMortarReset_Private(AbutPair);

@@ -59,6 +59,7 @@ PETSC_INTERN PetscErrorCode AbutSceneProbesFromOptions_Private(AbutScene, PetscI
 PETSC_INTERN PetscErrorCode AbutSceneSolverFromOptions_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutSceneCheckLoop_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutScenePrintGamma_Private(AbutScene);
+PETSC_INTERN PetscErrorCode AbutSceneGetUnknowns_Private(AbutScene, PetscInt *);
 PETSC_INTERN PetscErrorCode AbutSceneRecord_Private(AbutScene, PetscBool *);
 PETSC_INTERN PetscErrorCode AbutSceneRecordTimes_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutScenePrintHeader_Private(AbutScene);
