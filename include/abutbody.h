@@ -9,7 +9,7 @@
    Level: beginner
 
    Notes:
-   Linear isotropic elasticity, eqs. (1)-(6) of the paper, on cells of order 1. Its options carry its name: `-lower_mesh_box`,
+   Linear isotropic elasticity, eqs. (1)-(6) of the paper, on cells of order 1 to 4. Its options carry its name: `-lower_mesh_box`,
    `-lower_ksp_type`.
 
 .seealso: `AbutBodyCreate()`, `AbutBodySolve()`, `AbutMesh`, `AbutPair`, `AbutEstimator`
@@ -60,7 +60,7 @@ PETSC_EXTERN PetscErrorCode AbutBodyUpdate(AbutBody, Vec, Vec);
 PETSC_EXTERN PetscErrorCode AbutBodyMove(AbutBody, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutBodyGetSolution(AbutBody, Vec *);
 PETSC_EXTERN PetscErrorCode AbutBodyGetSolveCounts(AbutBody, PetscInt *, PetscInt *);
-PETSC_EXTERN PetscErrorCode AbutBodyGetVertexDisplacement(AbutBody, const PetscReal *[]);
+PETSC_EXTERN PetscErrorCode AbutBodyGetNodeDisplacement(AbutBody, const PetscReal *[]);
 PETSC_EXTERN PetscErrorCode AbutBodyGetWork(AbutBody, PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutBodyGetEnergy(AbutBody, PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutBodyGetReaction(AbutBody, PetscReal[2], PetscReal[2]);
@@ -77,10 +77,11 @@ PETSC_EXTERN PetscErrorCode AbutVonMises(const PetscReal[3], PetscReal, PetscRea
 /* One side of a body as an ordered list of nodes, the same on all ranks. Nodes follow the boundary with the body on the left; a node of
    a side always carries unknowns (hanging ones never lie on the boundary). */
 typedef struct {
-  PetscInt   n;      /* nodes; element i joins node i and i+1 */
+  PetscInt   order;  /* of the displacement */
+  PetscInt   n;      /* nodes; element i has the nodes order*i to order*(i+1), Gauss-Lobatto points */
   PetscReal *x;      /* [2*n] coordinates */
-  PetscReal *normal; /* [2*(n-1)] outward unit normal of each element */
-  PetscInt  *global; /* [n] global number of the vertex, as in AbutMeshTopology */
+  PetscReal *normal; /* [2*elements] outward unit normal of each element */
+  PetscInt  *global; /* [n] global number of the node, as in AbutMeshTopology */
   PetscBool *fixed;  /* [n] its displacement along the normal is prescribed */
 } AbutSide;
 PETSC_EXTERN PetscErrorCode AbutBodyGetSide(AbutBody, PetscInt, const AbutSide **);
@@ -90,20 +91,23 @@ PETSC_EXTERN PetscErrorCode AbutBodyGetFarSide(AbutBody, const PetscReal[2], Pet
 PETSC_EXTERN PetscErrorCode AbutBodyGetSupportDisplacement(AbutBody, const PetscReal[2], const PetscReal[2], PetscReal *, PetscBool *);
 
 /* The whole boundary of a body after a solve, gathered on every rank: eq. (25), each element side on the boundary is one boundary element.
-   Element i starts at node i and ends at the next node of its contour (the first one after the last). Outer contours run counter-clockwise.
+   Element i has the nodes order*i, ..., order*i+order-1, and the first one of the next element of its contour: AbutBoundaryNode(b, i, k),
+   k = 0..order, at the Gauss-Lobatto points of the element. Outer contours run counter-clockwise.
    Displacements in the length unit of the scene, tractions in its stress unit, forces in stress times length. */
 typedef struct {
-  PetscInt           n; /* boundary elements, and as many nodes */
+  PetscInt           order;
+  PetscInt           n, nnodes; /* boundary elements; nodes: order times as many */
   PetscInt           ncontours;
   PetscInt          *contour;   /* [ncontours+1] first element of each contour, then n */
-  PetscInt          *end;       /* [n] end node of each element: the start node of the next one of its contour */
-  PetscReal         *x;         /* [2*n] start node of each element */
-  PetscReal         *u;         /* [2*n] displacement there */
+  PetscInt          *next;      /* [n] the next element of the contour; the first one after the last */
+  PetscReal         *x;         /* [2*nnodes] nodes */
+  PetscReal         *u;         /* [2*nnodes] displacements there */
   PetscInt          *side;      /* [n] side number of the element */
   AbutConditionType *condition; /* [2*n] what is known on the element, per component */
-  PetscReal         *traction;  /* [4*n] given traction, L2 projection: (t1,t2) at the start, (t1,t2) at the end; 0 where none is given */
-  PetscReal         *reaction;  /* [2*n] nodal forces by which prescribed displacements hold the body, K u - f, 0 elsewhere */
-  PetscReal         *contact;   /* [2*n] nodal contact forces on the body */
+  PetscReal *traction; /* [2*(order+1)*n] given traction, L2 projection: (t1,t2) at the nodes of each element; 0 where none is given */
+  PetscReal *reaction; /* [2*nnodes] nodal forces by which prescribed displacements hold the body, K u - f, 0 elsewhere */
+  PetscReal *contact;  /* [2*nnodes] nodal contact forces on the body */
 } AbutBoundary;
+#define AbutBoundaryNode(b, i, k) ((k) < (b)->order ? (b)->order * (i) + (k) : (b)->order * (b)->next[i])
 PETSC_EXTERN PetscErrorCode AbutBodyGetBoundary(AbutBody, AbutBoundary **);
 PETSC_EXTERN PetscErrorCode AbutBoundaryDestroy(AbutBoundary **);

@@ -24,23 +24,40 @@ PETSC_EXTERN const char *const AbutShapes[];
 
 #define ABUT_LEVEL_MAX 28 /* of a p4est quadtree, one below P4EST_QMAXLEVEL */
 
+#define ABUT_ORDER_MAX      4 /* on quads; 3 on triangles */
+#define ABUT_SIDE_NODES_MAX 5 /* of a cell's side, its ends included */
+#define ABUT_CELL_NODES_MAX 25
+
 /* Plain arrays of the local part of a mesh, valid until the mesh adapts or is destroyed.
-   Vertices are counted 0..nvertices-1 in the order of the DMPLEX; lengths in the unit of the scene. */
+   Vertices are counted 0..nvertices-1 in the order of the DMPLEX; lengths in the unit of the scene.
+   Nodes are the points whose displacements make the function: the vertices, with their numbers, then points inside the sides of the cells
+   and inside the cells; Gauss-Lobatto points on a side, and their products in a quad. The displacement of a hanging node, on half of a
+   coarse side, is that of the coarse side there: a sum over its anchors. */
 typedef struct {
-  PetscInt         ncells, nvertices;
+  PetscInt         order; /* of the displacement */
+  PetscInt         ncells, nvertices, nnodes;
   PetscInt         corners;    /* of a cell: 4 or 3 */
+  PetscInt         nodes;      /* of a cell, its corners first, then those of its sides in turn */
   const PetscInt  *cell;       /* [corners*ncells] local vertices of each cell, counter-clockwise */
+  const PetscInt  *cellnode;   /* [nodes*ncells] local nodes of each cell */
   const PetscInt  *level;      /* [ncells] refinement level, 0 in the first mesh */
-  const PetscReal *x;          /* [2*nvertices] coordinates */
-  const PetscInt  *anchor;     /* [2*nvertices] the two ends of the coarse side on which a hanging vertex is the middle, or -1,-1 */
-  PetscInt         nunknown;   /* vertices that carry unknowns on this rank, owned ones first */
+  const PetscReal *x;          /* [2*nnodes] coordinates */
+  const PetscInt  *anchors;    /* [nnodes+1] where the anchors of each node begin; a node with unknowns of its own has none */
+  const PetscInt  *anchor;     /* [anchors[nnodes]] nodes with unknowns ... */
+  const PetscReal *weight;     /* ... and their weights */
+  PetscInt         nunknown;   /* nodes that carry unknowns on this rank, owned ones first */
   PetscInt         nowned;     /* of these, owned by this rank */
   PetscInt         firstowned; /* global number of the first owned one */
   PetscInt         nglobal;    /* over all ranks */
-  const PetscInt  *unknown;    /* [nvertices] index in 0..nunknown-1, -1 for a hanging vertex */
-  const PetscInt  *global;     /* [nunknown] global number of the vertex; its displacement unknowns are 2*global and 2*global+1 */
+  const PetscInt  *unknown;    /* [nnodes] index in 0..nunknown-1, -1 for a hanging node */
+  const PetscInt  *global;     /* [nunknown] global number of the node; its displacement unknowns are 2*global and 2*global+1 */
+  PetscInt         nedges;     /* sides of the local cells, and coarse sides above hanging ones */
+  const PetscInt  *edge;       /* [2*nedges] end vertices, in the same order on all ranks */
+  const PetscInt  *edgeparent; /* [2*nedges] the coarse side above a hanging one, and which half of it: 0 has its first vertex; or -1,-1 */
+  const PetscInt  *celledge;   /* [corners*ncells] edge from corner k to corner k+1 */
   PetscInt         nsideedges; /* element sides on the boundary of the body, of local cells */
   const PetscInt  *sideedge;   /* [3*nsideedges] start vertex, end vertex (body on the left), side number */
+  const PetscInt  *sidenode;   /* [(order+1)*nsideedges] nodes from start to end */
   const PetscInt  *sidecell;   /* [nsideedges] the cell */
 } AbutMeshTopology;
 
@@ -63,9 +80,18 @@ PETSC_EXTERN PetscErrorCode AbutMeshGetSideEnds(AbutMesh, PetscInt, PetscReal[4]
 PETSC_EXTERN PetscErrorCode AbutMeshAdapt(AbutMesh, const PetscBool[]);
 PETSC_EXTERN PetscErrorCode AbutMeshGetGeneration(AbutMesh, PetscInt *);
 
-/* Shape functions N[corners], their gradients G[2*corners] (1/length) and the Jacobian determinant of local cell c at a reference point:
+/* Shape functions N[nodes], their gradients G[2*nodes] (1/length) and the Jacobian determinant of local cell c at a reference point:
    [-1,1]^2 for quads, (0,0)(1,0)(0,1) for triangles. The inverse map says whether the point lies in the cell (or on its border). */
 PETSC_EXTERN PetscErrorCode AbutMeshMapCell(AbutMesh, PetscInt, const PetscReal[2], PetscReal[2], PetscReal[], PetscReal[], PetscReal *);
+PETSC_EXTERN PetscErrorCode AbutMeshMapPoint(AbutMesh, PetscInt, const PetscReal[2], PetscReal[2], PetscReal[4]);
+PETSC_EXTERN PetscErrorCode AbutMeshEvaluateBasis(AbutMesh, const PetscReal[2], PetscReal[], PetscReal[]);
+PETSC_EXTERN PetscErrorCode AbutMeshGetReferenceNodes(AbutMesh, const PetscReal *[]);
+PETSC_EXTERN PetscErrorCode AbutGetLobattoNodes(PetscInt, PetscReal[], PetscReal[]);
+PETSC_EXTERN PetscErrorCode AbutGetLobattoMassInverse(PetscInt, PetscReal[]);
+PETSC_EXTERN PetscErrorCode AbutEvaluateLobatto(PetscInt, PetscReal, PetscReal[], PetscReal[]);
+PETSC_EXTERN PetscErrorCode AbutMeshSumAtEdges(AbutMesh, PetscInt, PetscReal[]);
+PETSC_EXTERN PetscErrorCode AbutMeshGetOrder(AbutMesh, PetscInt *);
+PETSC_EXTERN PetscErrorCode AbutMeshSetOrder(AbutMesh, PetscInt);
 PETSC_EXTERN PetscErrorCode AbutMeshGetCellArea(AbutMesh, PetscInt, PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutMeshInvertCell(AbutMesh, PetscInt, const PetscReal[2], PetscReal[2], PetscBool *);
 

@@ -10,13 +10,14 @@ PetscErrorCode FembemBoundaryCreate(MPI_Comm comm, const AbutBoundary *given, Pe
 {
   PetscFunctionBegin;
   AbutCheckInput(poisson < 0.5, comm, "estimator_type: fembem needs a Poisson's ratio below 0.5, not %g; use zz", (double)poisson);
+  AbutCheckInput(given->order == 1, comm, "estimator_type: fembem is for order 1; give mesh_order 1, or zz");
   b->comm      = comm;
   b->given     = given;
   b->n         = given->n;
   b->young     = young;
   b->mat.mu    = young / (2. * (1. + poisson));
   b->mat.kappa = 3. - 4. * poisson;
-  b->next      = given->end;
+  b->next      = given->next;
   PetscCall(PetscMalloc4(b->n, &b->previous, b->n, &b->z, b->n, &b->u, 2 * b->n, &b->t));
   for (PetscInt i = 0; i < b->n; ++i) {
     b->previous[b->next[i]] = i;

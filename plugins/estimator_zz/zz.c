@@ -111,12 +111,12 @@ static PetscErrorCode AbutPatchesSpread_Private(AbutBody body, const AbutMeshTop
 static PetscErrorCode AbutPatchesEvaluate_Private(const AbutMeshTopology *t, const AbutPatches *p, PetscReal s[])
 {
   PetscFunctionBegin;
-  for (PetscInt v = 0; v < t->nvertices; ++v) {
-    const PetscInt a = t->unknown[v] >= 0 ? v : t->anchor[2 * v], b = t->unknown[v] >= 0 ? v : t->anchor[2 * v + 1];
-
-    for (PetscInt j = 0; j < 3; ++j)
-      s[3 * v + j] = 0.5 * (p->coef[ABUT_PATCH_COEFS * t->unknown[a] + 4 * j] + p->coef[ABUT_PATCH_COEFS * t->unknown[b] + 4 * j]);
-  }
+  for (PetscInt v = 0; v < t->nvertices; ++v)
+    for (PetscInt j = 0; j < 3; ++j) {
+      s[3 * v + j] = t->unknown[v] < 0 ? 0. : p->coef[ABUT_PATCH_COEFS * t->unknown[v] + 4 * j];
+      for (PetscInt i = t->anchors[v]; i < t->anchors[v + 1]; ++i)
+        s[3 * v + j] += t->weight[i] * p->coef[ABUT_PATCH_COEFS * t->unknown[t->anchor[i]] + 4 * j];
+    }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -172,6 +172,7 @@ static PetscErrorCode AbutEstimatorEstimate_ZZ(AbutEstimator est, AbutBody body,
   PetscCall(AbutEstimatorGetData(est, &zz));
   PetscCall(AbutBodyGetMesh(body, &mesh));
   PetscCall(AbutMeshGetTopology(mesh, &t));
+  AbutCheckInput(t->order == 1, PetscObjectComm((PetscObject)est), "estimator_type: zz is for order 1; give mesh_order 1");
   PetscCall(PetscMalloc1(3 * t->nvertices, &zz->s));
   PetscCall(AbutEstimatorRecover_ZZ(body, t, zz->s));
   PetscCall(AbutEstimatorCompareStress(est, body, AbutEstimatorStress_ZZ, eta));

@@ -35,6 +35,7 @@ static PetscErrorCode Estimate(AbutEstimator est, AbutBody body, PetscReal eta[]
   PetscFunctionBegin;
   PetscCall(AbutBodyGetMesh(body, &mesh));
   PetscCall(AbutMeshGetTopology(mesh, &t));
+  AbutCheckInput(t->order == 1, PetscObjectComm((PetscObject)est), "estimator_type: template is for order 1; give mesh_order 1, or zz");
   middle[0] = middle[1] = t->corners == 4 ? 0. : 1. / 3.;
   PetscCall(PetscCalloc2(4 * t->nunknown, &sum, 3 * t->nvertices, &nodal));
   for (PetscInt c = 0; c < t->ncells; ++c) { /* three stresses and a count, from each cell to its vertices */
@@ -48,12 +49,17 @@ static PetscErrorCode Estimate(AbutEstimator est, AbutBody body, PetscReal eta[]
     }
   }
   PetscCall(AbutEstimatorSumAtVertices(body, 4, sum)); /* the cells around a vertex may be on several ranks */
-  for (PetscInt v = 0; v < t->nvertices; ++v) {        /* a hanging vertex takes the mean of the two ends of the side it is on */
-    const PetscBool hangs = t->unknown[v] < 0 ? PETSC_TRUE : PETSC_FALSE;
-    const PetscInt  a = t->unknown[hangs ? t->anchor[2 * v] : v], b = t->unknown[hangs ? t->anchor[2 * v + 1] : v];
+  for (PetscInt v = 0; v < t->nvertices; ++v)
+    for (PetscInt i = 0; i < 3; ++i) {
+      const PetscInt own = t->unknown[v];
 
-    for (PetscInt i = 0; i < 3; ++i) nodal[3 * v + i] = 0.5 * (sum[4 * a + i] / sum[4 * a + 3] + sum[4 * b + i] / sum[4 * b + 3]);
-  }
+      nodal[3 * v + i] = own < 0 ? 0. : sum[4 * own + i] / sum[4 * own + 3];
+      for (PetscInt k = t->anchors[v]; k < t->anchors[v + 1]; ++k) { /* a hanging vertex takes the mean of the ends of the side it is on */
+        const PetscInt end = t->unknown[t->anchor[k]];
+
+        nodal[3 * v + i] += t->weight[k] * sum[4 * end + i] / sum[4 * end + 3];
+      }
+    }
   PetscCall(AbutEstimatorSetData(est, nodal));
   PetscCall(AbutEstimatorCompareStress(est, body, SmoothStress, eta)); /* eq. (27) of the paper: norms, quadrature, sums over ranks */
   PetscCall(PetscFree2(sum, nodal));

@@ -180,7 +180,9 @@ PetscErrorCode AbutBodySetUp(AbutBody body)
   if (generation == body->generation) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(AbutBodyReset_Private(body));
   PetscCall(AbutMeshGetTopology(body->mesh, &t));
-  PetscCall(PetscCalloc1(2 * t->nvertices, &body->vertexu));
+  PetscCall(PetscCalloc1(2 * t->nnodes, &body->nodeu));
+  PetscCall(AbutElementCreate_Private(body->mesh, &body->element));
+  body->meandilatation = (PetscBool)(t->corners == 4 && t->order == 1 && body->poisson > ABUT_ALMOST_INCOMPRESSIBLE);
   PetscCall(VecCreateGhostBlock(PetscObjectComm((PetscObject)body), 2, 2 * t->nowned, PETSC_DECIDE, t->nunknown - t->nowned,
                                 t->global + t->nowned, &body->u));
   PetscCall(AbutBodyCreateVec(body, &body->load));
@@ -222,7 +224,8 @@ PetscErrorCode AbutBodyReset_Private(AbutBody body)
   PetscCall(VecDestroy(&body->contact));
   PetscCall(VecDestroy(&body->rhs));
   PetscCall(VecDestroy(&body->u));
-  PetscCall(PetscFree(body->vertexu));
+  PetscCall(AbutElementDestroy_Private(&body->element));
+  PetscCall(PetscFree(body->nodeu));
   PetscCall(AbutBodyBoundaryReset_Private(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

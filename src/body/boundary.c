@@ -6,7 +6,7 @@
 /* One element side as it travels */
 typedef struct {
   PetscReal x[2];
-  PetscInt  start, end, side;
+  PetscInt  node[ABUT_SIDE_NODES_MAX], side;
 } AbutElementSide;
 
 /* All element sides on the boundary, from every rank, in the order of their start vertex */
@@ -26,9 +26,8 @@ static PetscErrorCode AbutBoundaryGather_Private(AbutBody body, PetscInt *n, Abu
     const PetscInt *edge = t->sideedge + 3 * e;
 
     for (PetscInt d = 0; d < 2; ++d) mine[e].x[d] = t->x[2 * edge[0] + d];
-    mine[e].start = t->global[t->unknown[edge[0]]];
-    mine[e].end   = t->global[t->unknown[edge[1]]];
-    mine[e].side  = edge[2];
+    for (PetscInt k = 0; k <= t->order; ++k) mine[e].node[k] = t->global[t->unknown[t->sidenode[(t->order + 1) * e + k]]];
+    mine[e].side = edge[2];
   }
   PetscCall(PetscMalloc2(size, &counts, size + 1, &offsets));
   bytes = (PetscMPIInt)(t->nsideedges * sizeof(*mine));
@@ -41,7 +40,7 @@ static PetscErrorCode AbutBoundaryGather_Private(AbutBody body, PetscInt *n, Abu
   PetscCall(PetscMalloc1(*n, all));
   PetscCall(PetscMalloc2(*n, &key, *n, &order));
   for (PetscInt i = 0; i < *n; ++i) {
-    key[i]   = got[i].start;
+    key[i]   = got[i].node[0];
     order[i] = i;
   }
   PetscCall(PetscSortIntWithArray(*n, key, order));
@@ -61,10 +60,19 @@ static PetscInt AbutBoundaryFind_Private(PetscInt n, const AbutElementSide all[]
   while (low < high) {
     const PetscInt middle = (low + high) / 2;
 
-    if (all[middle].start < start) low = middle + 1;
+    if (all[middle].node[0] < start) low = middle + 1;
     else high = middle;
   }
   return low;
+}
+
+/* Element k of the boundary is element side e; its nodes follow when those of all elements are there */
+static void AbutBoundaryAppend_Private(const AbutElementSide *e, PetscInt k, AbutBoundary *b, PetscInt global[])
+{
+  b->side[k] = e->side;
+  b->next[k] = k + 1;
+  for (PetscInt i = 0; i < b->order; ++i) global[b->order * k + i] = e->node[i];
+  for (PetscInt d = 0; d < 2; ++d) b->x[2 * b->order * k + d] = e->x[d];
 }
 
 /* Each contour begins at the lowest, then leftmost, node at which one side ends and the next begins: the same for every distribution */
@@ -76,8 +84,8 @@ static PetscErrorCode AbutBoundaryChain_Private(PetscInt n, const AbutElementSid
   PetscFunctionBegin;
   PetscCall(PetscMalloc3(n, &next, n, &previous, n, &used));
   for (PetscInt i = 0; i < n; ++i) {
-    next[i] = AbutBoundaryFind_Private(n, all, all[i].end);
-    PetscCheck(all[next[i]].start == all[i].end, PETSC_COMM_SELF, PETSC_ERR_PLIB, "The boundary of a body is not closed");
+    next[i] = AbutBoundaryFind_Private(n, all, all[i].node[b->order]);
+    PetscCheck(all[next[i]].node[0] == all[i].node[b->order], PETSC_COMM_SELF, PETSC_ERR_PLIB, "The boundary of a body is not closed");
     previous[next[i]] = i;
     used[i]           = PETSC_FALSE;
   }
@@ -91,28 +99,45 @@ static PetscErrorCode AbutBoundaryChain_Private(PetscInt n, const AbutElementSid
     PetscCheck(first >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "A contour has no node where one side ends and the next begins");
     b->contour[b->ncontours++] = k;
     for (PetscInt i = first; !used[i]; i = next[i]) {
-      used[i]         = PETSC_TRUE;
-      b->side[k]      = all[i].side;
-      global[k]       = all[i].start;
-      b->end[k]       = k + 1;
-      b->x[2 * k]     = all[i].x[0];
-      b->x[2 * k + 1] = all[i].x[1];
-      ++k;
+      used[i] = PETSC_TRUE;
+      AbutBoundaryAppend_Private(&all[i], k++, b, global);
     }
-    b->end[k - 1] = b->contour[b->ncontours - 1];
+    b->next[k - 1] = b->contour[b->ncontours - 1];
   }
   b->contour[b->ncontours] = n;
   PetscCall(PetscFree3(next, previous, used));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode AbutBoundaryCreate_Private(PetscInt n, AbutBoundary **b)
+/* Nodes inside the elements, which are straight */
+static PetscErrorCode AbutBoundaryPlaceNodes_Private(AbutBoundary *b)
 {
+  PetscReal line[ABUT_SIDE_NODES_MAX];
+
+  PetscFunctionBegin;
+  PetscCall(AbutGetLobattoNodes(b->order, line, NULL));
+  for (PetscInt i = 0; i < b->n; ++i)
+    for (PetscInt k = 1; k < b->order; ++k)
+      for (PetscInt d = 0; d < 2; ++d) {
+        const PetscReal s = 0.5 * (1. + line[k]);
+
+        b->x[2 * AbutBoundaryNode(b, i, k) + d] = (1. - s) * b->x[2 * AbutBoundaryNode(b, i, 0) + d] +
+                                                  s * b->x[2 * AbutBoundaryNode(b, i, b->order) + d];
+      }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutBoundaryCreate_Private(PetscInt order, PetscInt n, AbutBoundary **b)
+{
+  const PetscInt nodes = order * n;
+
   PetscFunctionBegin;
   PetscCall(PetscNew(b));
-  (*b)->n = n;
-  PetscCall(PetscCalloc5(n + 1, &(*b)->contour, n, &(*b)->end, 2 * n, &(*b)->x, n, &(*b)->side, 2 * n, &(*b)->condition));
-  PetscCall(PetscCalloc4(2 * n, &(*b)->u, 4 * n, &(*b)->traction, 2 * n, &(*b)->reaction, 2 * n, &(*b)->contact));
+  (*b)->order  = order;
+  (*b)->n      = n;
+  (*b)->nnodes = nodes;
+  PetscCall(PetscCalloc5(n + 1, &(*b)->contour, n, &(*b)->next, 2 * nodes, &(*b)->x, n, &(*b)->side, 2 * n, &(*b)->condition));
+  PetscCall(PetscCalloc4(2 * nodes, &(*b)->u, 2 * (order + 1) * n, &(*b)->traction, 2 * nodes, &(*b)->reaction, 2 * nodes, &(*b)->contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -132,7 +157,7 @@ PetscErrorCode AbutBoundaryDestroy(AbutBoundary **b)
 {
   PetscFunctionBegin;
   if (!*b) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree5((*b)->contour, (*b)->end, (*b)->x, (*b)->side, (*b)->condition));
+  PetscCall(PetscFree5((*b)->contour, (*b)->next, (*b)->x, (*b)->side, (*b)->condition));
   PetscCall(PetscFree4((*b)->u, (*b)->traction, (*b)->reaction, (*b)->contact));
   PetscCall(PetscFree(*b));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -142,18 +167,20 @@ PetscErrorCode AbutBodyBoundarySetUp_Private(AbutBody body)
 {
   AbutElementSide *all;
   AbutBoundary    *b;
-  PetscInt         n;
+  PetscInt         n, order;
   IS               from;
 
   PetscFunctionBegin;
+  PetscCall(AbutMeshGetOrder(body->mesh, &order));
   PetscCall(AbutBoundaryGather_Private(body, &n, &all));
-  PetscCall(AbutBoundaryCreate_Private(n, &body->boundary));
-  PetscCall(PetscMalloc1(n, &body->boundaryglobal));
+  PetscCall(AbutBoundaryCreate_Private(order, n, &body->boundary));
   b = body->boundary;
+  PetscCall(PetscMalloc1(b->nnodes, &body->boundaryglobal));
   PetscCall(AbutBoundaryChain_Private(n, all, b, body->boundaryglobal));
+  PetscCall(AbutBoundaryPlaceNodes_Private(b));
   PetscCall(PetscFree(all));
-  PetscCall(VecCreateSeq(PETSC_COMM_SELF, 2 * n, &body->onboundary));
-  PetscCall(ISCreateBlock(PETSC_COMM_SELF, 2, n, body->boundaryglobal, PETSC_COPY_VALUES, &from));
+  PetscCall(VecCreateSeq(PETSC_COMM_SELF, 2 * b->nnodes, &body->onboundary));
+  PetscCall(ISCreateBlock(PETSC_COMM_SELF, 2, b->nnodes, body->boundaryglobal, PETSC_COPY_VALUES, &from));
   PetscCall(VecScatterCreate(body->load, from, body->onboundary, NULL, &body->toboundary));
   PetscCall(ISDestroy(&from));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -255,6 +282,22 @@ PetscErrorCode AbutBodyGetReaction(AbutBody body, PetscReal reaction[2], PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* L2 projection of a given traction on element i: the element's mass matrix times its values at the nodes are its moments */
+static PetscErrorCode AbutBoundaryProjectTraction_Private(AbutBody body, AbutBoundary *b, PetscInt i, PetscInt d)
+{
+  const PetscInt   n = b->order + 1;
+  const PetscReal *p = b->x + 2 * AbutBoundaryNode(b, i, 0), *q = b->x + 2 * AbutBoundaryNode(b, i, b->order),
+                  half = 0.5 * PetscSqrtReal(PetscSqr(q[0] - p[0]) + PetscSqr(q[1] - p[1]));
+  PetscReal m[ABUT_SIDE_NODES_MAX], inverse[ABUT_SIDE_NODES_MAX * ABUT_SIDE_NODES_MAX];
+
+  PetscFunctionBegin;
+  PetscCall(AbutBodyEdgeMoments_Private(body, b->side[i], d, p, q, m));
+  PetscCall(AbutGetLobattoMassInverse(b->order, inverse));
+  for (PetscInt k = 0; k < n; ++k)
+    for (PetscInt j = 0; j < n; ++j) b->traction[2 * (n * i + k) + d] += inverse[n * k + j] * m[j] / half;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@C
    AbutBodyGetBoundary - The whole boundary of a body after a solve, gathered on every rank
 
@@ -273,38 +316,33 @@ PetscErrorCode AbutBodyGetReaction(AbutBody body, PetscReal reaction[2], PetscRe
 PetscErrorCode AbutBodyGetBoundary(AbutBody body, AbutBoundary **boundary)
 {
   const AbutBoundary *skeleton = body->boundary;
-  const PetscInt      n        = skeleton->n;
+  const PetscInt      n = skeleton->n, nodes = skeleton->nnodes;
   AbutBoundary       *b;
   Vec                 reaction;
   const PetscReal    *value;
 
   PetscFunctionBegin;
-  PetscCall(AbutBoundaryCreate_Private(n, &b));
+  PetscCall(AbutBoundaryCreate_Private(skeleton->order, n, &b));
   *boundary    = b;
   b->ncontours = skeleton->ncontours;
   PetscCall(PetscArraycpy(b->contour, skeleton->contour, b->ncontours + 1));
-  PetscCall(PetscArraycpy(b->end, skeleton->end, n));
-  PetscCall(PetscArraycpy(b->x, skeleton->x, 2 * n));
+  PetscCall(PetscArraycpy(b->next, skeleton->next, n));
+  PetscCall(PetscArraycpy(b->x, skeleton->x, 2 * nodes));
   PetscCall(PetscArraycpy(b->side, skeleton->side, n));
   for (PetscInt i = 0; i < n; ++i)
     for (PetscInt d = 0; d < 2; ++d) {
-      const PetscReal *p = b->x + 2 * i, *q = b->x + 2 * b->end[i], h = PetscSqrtReal(PetscSqr(q[0] - p[0]) + PetscSqr(q[1] - p[1]));
-      PetscReal        m[2];
-
       b->condition[2 * i + d] = body->condition[b->side[i]][d].type;
-      PetscCall(AbutBodyEdgeMoments_Private(body, b->side[i], d, p, q, m));
-      b->traction[4 * i + d]     = (4. * m[0] - 2. * m[1]) / h; /* L2 projection on the element: its mass matrix is h/6 (2 1; 1 2) */
-      b->traction[4 * i + 2 + d] = (4. * m[1] - 2. * m[0]) / h;
+      PetscCall(AbutBoundaryProjectTraction_Private(body, b, i, d));
     }
   PetscCall(AbutBodyGatherBoundary_Private(body, body->u, &value));
-  PetscCall(PetscArraycpy(b->u, value, 2 * n));
+  PetscCall(PetscArraycpy(b->u, value, 2 * nodes));
   PetscCall(AbutBodyUngatherBoundary_Private(body, &value));
   PetscCall(AbutBodyGatherBoundary_Private(body, body->contact, &value));
-  PetscCall(PetscArraycpy(b->contact, value, 2 * n));
+  PetscCall(PetscArraycpy(b->contact, value, 2 * nodes));
   PetscCall(AbutBodyUngatherBoundary_Private(body, &value));
   PetscCall(AbutBodyCreateReaction_Private(body, &reaction));
   PetscCall(AbutBodyGatherBoundary_Private(body, reaction, &value));
-  PetscCall(PetscArraycpy(b->reaction, value, 2 * n));
+  PetscCall(PetscArraycpy(b->reaction, value, 2 * nodes));
   PetscCall(AbutBodyUngatherBoundary_Private(body, &value));
   PetscCall(VecDestroy(&reaction));
   PetscFunctionReturn(PETSC_SUCCESS);

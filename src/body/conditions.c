@@ -160,27 +160,29 @@ PetscErrorCode AbutBodyGetCondition(AbutBody body, PetscInt side, PetscInt compo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Moments of a prescribed traction against the two hat functions of an element side. The substitution s = z^3(10-15z+6z^2) crowds the
-   points at the ends, where a pressure may have a root or a kink; polynomials up to degree 4 are still integrated exactly. */
+/* Moments m[order+1] of a prescribed traction against the functions of an element side. The substitution s = z^3(10-15z+6z^2) crowds the
+   points at the ends, where a pressure may have a root or a kink; polynomials up to degree 4 and more are still integrated exactly. */
 PetscErrorCode AbutBodyEdgeMoments_Private(AbutBody body, PetscInt side, PetscInt component, const PetscReal a[2], const PetscReal b[2],
-                                           PetscReal m[2])
+                                           PetscReal m[])
 {
   const AbutCondition *c      = &body->condition[side][component];
   const PetscReal      length = PetscSqrtReal(PetscSqr(b[0] - a[0]) + PetscSqr(b[1] - a[1]));
-  PetscReal            z[16], w[16];
+  PetscReal            z[12 + 4 * ABUT_ORDER_MAX], w[12 + 4 * ABUT_ORDER_MAX], N[ABUT_SIDE_NODES_MAX];
+  PetscInt             p;
 
   PetscFunctionBegin;
-  m[0] = m[1] = 0.;
+  PetscCall(AbutMeshGetOrder(body->mesh, &p));
+  for (PetscInt i = 0; i <= p; ++i) m[i] = 0.;
   if (c->type != ABUT_TRACTION || !c->value) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscDTGaussQuadrature(16, 0., 1., z, w));
-  for (PetscInt q = 0; q < 16; ++q) {
+  PetscCall(PetscDTGaussQuadrature(12 + 4 * p, 0., 1., z, w));
+  for (PetscInt q = 0; q < 12 + 4 * p; ++q) {
     const PetscReal s = z[q] * z[q] * z[q] * (10. - 15. * z[q] + 6. * z[q] * z[q]), ds = 30. * PetscSqr(z[q] * (1. - z[q]));
     const PetscReal x[2] = {a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1])};
     PetscReal       t;
 
     PetscCall(AbutExpressionEvaluate(c->value, x, &t));
-    m[0] += w[q] * ds * length * t * (1. - s);
-    m[1] += w[q] * ds * length * t * s;
+    PetscCall(AbutEvaluateLobatto(p, 2. * s - 1., N, NULL));
+    for (PetscInt i = 0; i <= p; ++i) m[i] += w[q] * ds * length * t * N[i];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -189,21 +191,43 @@ PetscErrorCode AbutBodyEdgeMoments_Private(AbutBody body, PetscInt side, PetscIn
 static PetscErrorCode AbutBodyLoad_Private(AbutBody body, const AbutMeshTopology *t)
 {
   const AbutBoundary *b = body->boundary;
+  PetscReal           m[ABUT_SIDE_NODES_MAX];
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < b->n; ++i)
     for (PetscInt d = 0; d < 2; ++d) {
-      const PetscInt vertex[2] = {body->boundaryglobal[i], body->boundaryglobal[b->end[i]]};
-      PetscReal      m[2];
-
       if (body->condition[b->side[i]][d].type != ABUT_TRACTION || !body->condition[b->side[i]][d].value) continue;
-      PetscCall(AbutBodyEdgeMoments_Private(body, b->side[i], d, b->x + 2 * i, b->x + 2 * b->end[i], m));
-      for (PetscInt k = 0; k < 2; ++k)
-        if (vertex[k] >= t->firstowned && vertex[k] < t->firstowned + t->nowned)
-          PetscCall(VecSetValue(body->load, 2 * vertex[k] + d, m[k], ADD_VALUES));
+      PetscCall(AbutBodyEdgeMoments_Private(body, b->side[i], d, b->x + 2 * AbutBoundaryNode(b, i, 0),
+                                            b->x + 2 * AbutBoundaryNode(b, i, b->order), m));
+      for (PetscInt k = 0; k <= b->order; ++k) {
+        const PetscInt node = body->boundaryglobal[AbutBoundaryNode(b, i, k)];
+
+        if (node >= t->firstowned && node < t->firstowned + t->nowned) PetscCall(VecSetValue(body->load, 2 * node + d, m[k], ADD_VALUES));
+      }
     }
   PetscCall(VecAssemblyBegin(body->load));
   PetscCall(VecAssemblyEnd(body->load));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Which unknowns of the gathered boundary are prescribed, is[2*nnodes], and their values; the first side of a corner says it */
+static PetscErrorCode AbutBodyPrescribe_Private(AbutBody body, PetscBool is[], PetscReal value[])
+{
+  const AbutBoundary *b = body->boundary;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < b->n; ++i)
+    for (PetscInt d = 0; d < 2; ++d) {
+      const AbutCondition *c = &body->condition[b->side[i]][d];
+
+      for (PetscInt k = 0; c->type == ABUT_DISPLACEMENT && k <= b->order; ++k) {
+        const PetscInt node = AbutBoundaryNode(b, i, k);
+
+        if (is[2 * node + d]) continue;
+        is[2 * node + d] = PETSC_TRUE;
+        PetscCall(AbutExpressionEvaluate(c->value, b->x + 2 * node, &value[2 * node + d]));
+      }
+    }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -212,42 +236,29 @@ static PetscErrorCode AbutBodyLoad_Private(AbutBody body, const AbutMeshTopology
 PetscErrorCode AbutBodyConditionsSetUp_Private(AbutBody body)
 {
   const AbutMeshTopology *t;
-  const AbutBoundary     *b = body->boundary;
+  const PetscInt          all = 2 * body->boundary->nnodes;
   PetscInt               *row, n = 0;
   PetscReal              *value, *of;
+  PetscScalar            *p;
   PetscBool              *is;
 
   PetscFunctionBegin;
   PetscCall(AbutMeshGetTopology(body->mesh, &t));
-  PetscCall(PetscCalloc4(2 * b->n, &row, 2 * b->n, &value, 2 * b->n, &of, 2 * b->n, &is));
-  for (PetscInt i = 0; i < b->n; ++i)
-    for (PetscInt d = 0; d < 2; ++d) {
-      const PetscInt at[2] = {2 * i + d, 2 * b->end[i] + d};
+  PetscCall(PetscCalloc4(all, &row, all, &value, all, &of, all, &is));
+  PetscCall(AbutBodyPrescribe_Private(body, is, of));
+  for (PetscInt k = 0; k < all; ++k) {
+    const PetscInt node = body->boundaryglobal[k / 2];
 
-      if (body->condition[b->side[i]][d].type != ABUT_DISPLACEMENT) continue;
-      for (PetscInt k = 0; k < 2; ++k) {
-        if (is[at[k]]) continue; /* the first side of a corner has said it */
-        is[at[k]] = PETSC_TRUE;
-        PetscCall(AbutExpressionEvaluate(body->condition[b->side[i]][d].value, b->x + at[k] - d, &of[at[k]]));
-      }
-    }
-  for (PetscInt k = 0; k < 2 * b->n; ++k) {
-    const PetscInt vertex = body->boundaryglobal[k / 2];
-
-    if (!is[k] || vertex < t->firstowned || vertex >= t->firstowned + t->nowned) continue;
-    row[n]     = 2 * vertex + k % 2;
+    if (!is[k] || node < t->firstowned || node >= t->firstowned + t->nowned) continue;
+    row[n]     = 2 * node + k % 2;
     value[n++] = of[k];
   }
   PetscCall(PetscSortIntWithScalarArray(n, row, value));
   PetscCall(ISCreateGeneral(PetscObjectComm((PetscObject)body), n, row, PETSC_COPY_VALUES, &body->constrained));
   PetscCall(VecCreateMPI(PetscObjectComm((PetscObject)body), n, PETSC_DETERMINE, &body->prescribed));
-  {
-    PetscScalar *p;
-
-    PetscCall(VecGetArrayWrite(body->prescribed, &p));
-    for (PetscInt i = 0; i < n; ++i) p[i] = value[i];
-    PetscCall(VecRestoreArrayWrite(body->prescribed, &p));
-  }
+  PetscCall(VecGetArrayWrite(body->prescribed, &p));
+  for (PetscInt i = 0; i < n; ++i) p[i] = value[i];
+  PetscCall(VecRestoreArrayWrite(body->prescribed, &p));
   PetscCall(PetscFree4(row, value, of, is));
   PetscCall(AbutBodyLoad_Private(body, t));
   PetscFunctionReturn(PETSC_SUCCESS);

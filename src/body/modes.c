@@ -160,8 +160,8 @@ static PetscErrorCode AbutBodyCreateMotion_Private(AbutBody body, PetscInt kind,
   PetscCall(AbutMeshGetTopology(body->mesh, &t));
   PetscCall(AbutBodyCreateVec(body, mode));
   PetscCall(VecGetArrayWrite(*mode, &a));
-  for (PetscInt v = 0; v < t->nvertices; ++v)
-    if (t->anchor[2 * v] < 0 && t->unknown[v] < t->nowned) AbutMotionAt_Private(kind, center, t->x + 2 * v, a + 2 * t->unknown[v]);
+  for (PetscInt k = 0; k < t->nnodes; ++k)
+    if (t->unknown[k] >= 0 && t->unknown[k] < t->nowned) AbutMotionAt_Private(kind, center, t->x + 2 * k, a + 2 * t->unknown[k]);
   PetscCall(VecRestoreArrayWrite(*mode, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -191,8 +191,8 @@ static PetscErrorCode AbutBodyFindSupports_Private(AbutBody body, const AbutFree
 
   PetscFunctionBegin;
   PetscCall(AbutMeshGetBox(body->mesh, lower, upper));
-  PetscCall(PetscMalloc1(2 * b->n * f->n, &row));
-  for (PetscInt i = 0; i < b->n; ++i)
+  PetscCall(PetscMalloc1(2 * b->nnodes * f->n, &row));
+  for (PetscInt i = 0; i < b->nnodes; ++i)
     for (PetscInt k = 0; k < f->n; ++k) {
       const PetscReal scale = f->kind[k] == ABUT_TURN ? PetscMax(upper[0] - lower[0], upper[1] - lower[1]) : 1.;
       PetscReal       u[2];
@@ -203,7 +203,7 @@ static PetscErrorCode AbutBodyFindSupports_Private(AbutBody body, const AbutFree
   for (PetscInt step = 0; step < f->n; ++step) {
     PetscReal pivot[ABUT_MAX_MODES] = {0.}, most = 0.;
 
-    for (PetscInt i = 0; i < 2 * b->n; ++i) {
+    for (PetscInt i = 0; i < 2 * b->nnodes; ++i) {
       PetscReal norm = 0.;
 
       for (PetscInt k = 0; k < f->n; ++k) norm += PetscSqr(row[i * f->n + k]);
@@ -212,7 +212,7 @@ static PetscErrorCode AbutBodyFindSupports_Private(AbutBody body, const AbutFree
       support[step] = 2 * body->boundaryglobal[i / 2] + i % 2;
       for (PetscInt k = 0; k < f->n; ++k) pivot[k] = row[i * f->n + k] / PetscSqrtReal(norm);
     }
-    for (PetscInt i = 0; i < 2 * b->n; ++i) {
+    for (PetscInt i = 0; i < 2 * b->nnodes; ++i) {
       PetscReal dot = 0.;
 
       for (PetscInt k = 0; k < f->n; ++k) dot += row[i * f->n + k] * pivot[k];

@@ -18,18 +18,26 @@ static PetscErrorCode AbutSideRange_Private(AbutBody body, PetscInt side, PetscI
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Is the displacement along the normal of the boundary prescribed at this node, by this side or by the one next to it? */
-static PetscBool AbutNodeIsFixed_Private(AbutBody body, PetscInt node, const PetscReal normal[2])
+/* Is the displacement along a normal prescribed on these two elements together? */
+static PetscBool AbutNodeIsFixed_Private(AbutBody body, PetscInt before, PetscInt behind, const PetscReal normal[2])
 {
-  const AbutBoundary *b    = body->boundary;
-  PetscBool           u[2] = {PETSC_FALSE, PETSC_FALSE};
+  const PetscInt side[2] = {body->boundary->side[before], body->boundary->side[behind]};
+  PetscBool      u[2]    = {PETSC_FALSE, PETSC_FALSE};
 
-  for (PetscInt i = 0; i < b->n; ++i) {
-    if (i != node && b->end[i] != node) continue;
-    for (PetscInt d = 0; d < 2; ++d)
-      if (body->condition[b->side[i]][d].type == ABUT_DISPLACEMENT) u[d] = PETSC_TRUE;
-  }
+  for (PetscInt k = 0; k < 4; ++k)
+    if (body->condition[side[k / 2]][k % 2].type == ABUT_DISPLACEMENT) u[k % 2] = PETSC_TRUE;
   return (PetscBool)((u[0] || PetscAbsReal(normal[0]) < 1e-12) && (u[1] || PetscAbsReal(normal[1]) < 1e-12));
+}
+
+static void AbutSideNormals_Private(AbutSide *s)
+{
+  for (PetscInt i = 0; i + 1 < s->n; i += s->order) {
+    const PetscReal *a = s->x + 2 * i, *b = s->x + 2 * (i + s->order), d[2] = {b[0] - a[0], b[1] - a[1]},
+                    h = PetscSqrtReal(d[0] * d[0] + d[1] * d[1]);
+
+    s->normal[2 * (i / s->order)]     = d[1] / h;
+    s->normal[2 * (i / s->order) + 1] = -d[0] / h;
+  }
 }
 
 /*@C
@@ -52,35 +60,40 @@ PetscErrorCode AbutBodyGetSide(AbutBody body, PetscInt side, const AbutSide **s)
 {
   AbutSide           *out = &body->side[side];
   const AbutBoundary *b   = body->boundary;
-  PetscInt            first, n;
+  const PetscInt      p   = b->order;
+  PetscInt            first, n, previous = -1;
 
   PetscFunctionBegin;
   *s = out;
   if (out->n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(AbutSideRange_Private(body, side, &first, &n));
   PetscCheck(n > 0, PetscObjectComm((PetscObject)body), PETSC_ERR_PLIB, "Side %" PetscInt_FMT " has no element", side);
-  out->n = n + 1;
-  PetscCall(PetscMalloc4(2 * (n + 1), &out->x, 2 * n, &out->normal, n + 1, &out->global, n + 1, &out->fixed));
-  for (PetscInt i = 0, node = first; i <= n; ++i, node = b->end[node]) {
+  out->order = p;
+  out->n     = p * n + 1;
+  PetscCall(PetscMalloc4(2 * out->n, &out->x, 2 * n, &out->normal, out->n, &out->global, out->n, &out->fixed));
+  for (PetscInt i = 0; i < out->n; ++i) {
+    const PetscInt node = i < p * n ? p * first + i : AbutBoundaryNode(b, first + n - 1, p);
+
     out->global[i] = body->boundaryglobal[node];
     for (PetscInt d = 0; d < 2; ++d) out->x[2 * i + d] = b->x[2 * node + d];
   }
-  for (PetscInt i = 0; i < n; ++i) {
-    const PetscReal d[2] = {out->x[2 * i + 2] - out->x[2 * i], out->x[2 * i + 3] - out->x[2 * i + 1]},
-                    h    = PetscSqrtReal(d[0] * d[0] + d[1] * d[1]);
+  AbutSideNormals_Private(out);
+  for (PetscInt i = 0; i < b->n; ++i)
+    if (b->next[i] == first) previous = i;
+  for (PetscInt i = 0; i < out->n; ++i) {
+    const PetscInt k = i / p; /* element behind the node, the one before it is another only at its start */
 
-    out->normal[2 * i]     = d[1] / h;
-    out->normal[2 * i + 1] = -d[0] / h;
+    out->fixed[i] = AbutNodeIsFixed_Private(body, i == 0 ? previous : first + PetscMin(i % p ? k : k - 1, n - 1),
+                                            k < n ? first + k : b->next[first + n - 1], out->normal + 2 * PetscMin(k, n - 1));
   }
-  for (PetscInt i = 0, node = first; i <= n; ++i, node = b->end[node])
-    out->fixed[i] = AbutNodeIsFixed_Private(body, node, out->normal + 2 * PetscMin(i, n - 1));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Unit normal at a node: the direction of the sum of the normals of the elements that meet there */
 static void AbutSideNodeNormal_Private(const AbutSide *s, PetscInt i, PetscReal n[2])
 {
-  const PetscReal *p = s->normal + 2 * PetscMax(i - 1, 0), *q = s->normal + 2 * PetscMin(i, s->n - 2);
+  const PetscInt   behind = PetscMin(i, s->n - 2) / s->order, before = PetscMax(i - 1, 0) / s->order;
+  const PetscReal *p = s->normal + 2 * before, *q = s->normal + 2 * behind;
   const PetscReal  m[2] = {p[0] + q[0], p[1] + q[1]}, h = PetscSqrtReal(m[0] * m[0] + m[1] * m[1]);
 
   n[0] = m[0] / h;
@@ -108,14 +121,15 @@ PetscErrorCode AbutBodyGetSideTrace(AbutBody body, PetscInt side, Vec u, PetscRe
 {
   const AbutSide  *s;
   const PetscReal *value;
-  PetscInt         node, n;
+  PetscInt         first, n;
 
   PetscFunctionBegin;
   PetscCall(AbutBodyGetSide(body, side, &s));
-  PetscCall(AbutSideRange_Private(body, side, &node, &n));
+  PetscCall(AbutSideRange_Private(body, side, &first, &n));
   PetscCall(AbutBodyGatherBoundary_Private(body, u, &value));
-  for (PetscInt i = 0; i <= n; ++i, node = body->boundary->end[node]) {
-    PetscReal normal[2];
+  for (PetscInt i = 0; i < s->n; ++i) {
+    const PetscInt node = i + 1 < s->n ? s->order * first + i : AbutBoundaryNode(body->boundary, first + n - 1, s->order);
+    PetscReal      normal[2];
 
     AbutSideNodeNormal_Private(s, i, normal);
     un[i] = normal[0] * value[2 * node] + normal[1] * value[2 * node + 1];

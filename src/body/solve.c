@@ -3,7 +3,7 @@
 
 /* Solves of a body, and what became of them */
 
-/* Displacement at every local vertex: that of a hanging one is the mean of the ends of the coarse side */
+/* Displacement at every local node: at a hanging one that of the coarse side */
 PetscErrorCode AbutBodySpread_Private(AbutBody body)
 {
   const AbutMeshTopology *t;
@@ -16,11 +16,12 @@ PetscErrorCode AbutBodySpread_Private(AbutBody body)
   PetscCall(VecGhostUpdateEnd(body->u, INSERT_VALUES, SCATTER_FORWARD));
   PetscCall(VecGhostGetLocalForm(body->u, &local));
   PetscCall(VecGetArrayRead(local, &ua));
-  for (PetscInt v = 0; v < t->nvertices; ++v)
+  for (PetscInt k = 0; k < t->nnodes; ++k)
     for (PetscInt d = 0; d < 2; ++d) {
-      const PetscInt *a = t->anchor + 2 * v;
+      PetscReal *u = body->nodeu + 2 * k + d;
 
-      body->vertexu[2 * v + d] = a[0] < 0 ? ua[2 * t->unknown[v] + d] : 0.5 * (ua[2 * t->unknown[a[0]] + d] + ua[2 * t->unknown[a[1]] + d]);
+      *u = t->unknown[k] < 0 ? 0. : ua[2 * t->unknown[k] + d];
+      for (PetscInt i = t->anchors[k]; i < t->anchors[k + 1]; ++i) *u += t->weight[i] * ua[2 * t->unknown[t->anchor[i]] + d];
     }
   PetscCall(VecRestoreArrayRead(local, &ua));
   PetscCall(VecGhostRestoreLocalForm(body->u, &local));
@@ -184,7 +185,7 @@ PetscErrorCode AbutBodyUpdate(AbutBody body, Vec contact, Vec w)
 
    Level: beginner
 
-.seealso: `AbutBodySolve()`, `AbutBodyGetVertexDisplacement()`
+.seealso: `AbutBodySolve()`, `AbutBodyGetNodeDisplacement()`
 @*/
 PetscErrorCode AbutBodyGetSolution(AbutBody body, Vec *u)
 {
@@ -194,7 +195,7 @@ PetscErrorCode AbutBodyGetSolution(AbutBody body, Vec *u)
 }
 
 /*@C
-   AbutBodyGetVertexDisplacement - The displacement of the last solve at all local vertices, hanging ones included
+   AbutBodyGetNodeDisplacement - The displacement of the last solve at all local nodes, hanging ones included; vertices come first
 
    Not Collective
 
@@ -202,16 +203,16 @@ PetscErrorCode AbutBodyGetSolution(AbutBody body, Vec *u)
 .  body - the body
 
    Output Parameter:
-.  u - [2*nvertices] displacements, length, in the order of `AbutMeshTopology`, owned by the body
+.  u - [2*nnodes] displacements, length, in the order of `AbutMeshTopology`, owned by the body
 
    Level: intermediate
 
 .seealso: `AbutBodyGetSolution()`, `AbutMeshGetTopology()`
 @*/
-PetscErrorCode AbutBodyGetVertexDisplacement(AbutBody body, const PetscReal *u[])
+PetscErrorCode AbutBodyGetNodeDisplacement(AbutBody body, const PetscReal *u[])
 {
   PetscFunctionBegin;
-  *u = body->vertexu;
+  *u = body->nodeu;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,108 +1,70 @@
 #include <abut/private/bodyimpl.h> /*I "abutbody.h" I*/
 
-/* Element matrices and their assembly. Hanging unknowns are replaced by the ends of the coarse side in the index list, with weights 1/2 in
-   the element matrix. */
+/* Assembly of the element matrices. Hanging unknowns are replaced by their anchors in the index list, with weights in the element matrix. */
 
-#define ABUT_MAX_CELL_VERTICES 8 /* a cell's own corners, two for each that hangs */
+#define ABUT_CELL_ANCHORS_MAX (ABUT_CELL_NODES_MAX + 2 * ABUT_SIDE_NODES_MAX) /* at most two sides of a cell hang */
 
-/* Stiffness of local cell c, eq. (11) of the paper, in plain loops: PetscFE's general ones cost ten times more */
-PetscErrorCode AbutCellStiffness_Private(AbutBody body, PetscInt c, PetscReal K[64])
+/* The nodes with unknowns that a cell sees, and the weights by which they make its own nodes: W[nodes x n] */
+static PetscInt AbutCellAnchors_Private(const AbutMeshTopology *t, PetscInt c, PetscInt node[], PetscReal W[], PetscBool *hanging)
 {
-  static const PetscReal quad[4][2] = {
-    {-0.57735026918962576, -0.57735026918962576},
-    {0.57735026918962576,  -0.57735026918962576},
-    {0.57735026918962576,  0.57735026918962576 },
-    {-0.57735026918962576, 0.57735026918962576 }
-  };
-  static const PetscReal triangle[1][2] = {
-    {1. / 3., 1. / 3.}
-  };
-  const AbutMeshTopology *t;
-  PetscInt                n, npoints;
-
-  PetscFunctionBegin;
-  PetscCall(AbutMeshGetTopology(body->mesh, &t));
-  n       = t->corners;
-  npoints = n == 4 ? 4 : 1;
-  for (PetscInt i = 0; i < 4 * n * n; ++i) K[i] = 0.;
-  for (PetscInt q = 0; q < npoints; ++q) {
-    PetscReal x[2], N[4], G[8], det, l, m;
-
-    PetscCall(AbutMeshMapCell(body->mesh, c, n == 4 ? quad[q] : triangle[q], x, N, G, &det));
-    if (n == 3) det *= 0.5;
-    l = det * body->lambda;
-    m = det * body->mu;
-    for (PetscInt a = 0; a < n; ++a)
-      for (PetscInt b = 0; b < n; ++b) {
-        const PetscReal xx = G[2 * a] * G[2 * b], xy = G[2 * a] * G[2 * b + 1], yx = G[2 * a + 1] * G[2 * b],
-                        yy = G[2 * a + 1] * G[2 * b + 1];
-        PetscReal *k       = K + 4 * n * a + 2 * b;
-
-        k[0] += l * xx + m * (2. * xx + yy);
-        k[1] += l * xy + m * yx;
-        k[2 * n] += l * yx + m * xy;
-        k[2 * n + 1] += l * yy + m * (xx + 2. * yy);
-      }
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The vertices with unknowns that a cell sees, and the weights by which they make its corners: W[corners x n] */
-static PetscInt AbutCellAnchors_Private(const AbutMeshTopology *t, PetscInt c, PetscInt vertex[], PetscReal W[], PetscBool *hanging)
-{
-  PetscInt n = 0;
+  const PetscInt *own = t->cellnode + t->nodes * c;
+  PetscInt        n   = 0;
 
   *hanging = PETSC_FALSE;
-  for (PetscInt i = 0; i < t->corners * ABUT_MAX_CELL_VERTICES; ++i) W[i] = 0.;
-  for (PetscInt k = 0; k < t->corners; ++k) {
-    const PetscInt v = t->cell[t->corners * c + k], count = t->anchor[2 * v] < 0 ? 1 : 2;
+  for (PetscInt k = 0; k < t->nodes; ++k)
+    if (t->anchors[own[k] + 1] > t->anchors[own[k]]) *hanging = PETSC_TRUE;
+  if (!*hanging) {
+    for (PetscInt k = 0; k < t->nodes; ++k) node[k] = own[k];
+    return t->nodes;
+  }
+  for (PetscInt i = 0; i < t->nodes * ABUT_CELL_ANCHORS_MAX; ++i) W[i] = 0.;
+  for (PetscInt k = 0; k < t->nodes; ++k) {
+    const PetscInt first = t->anchors[own[k]], count = t->anchors[own[k] + 1] - first;
 
-    for (PetscInt i = 0; i < count; ++i) {
-      const PetscInt a  = count == 1 ? v : t->anchor[2 * v + i];
+    for (PetscInt i = 0; i < PetscMax(1, count); ++i) {
+      const PetscInt a  = count ? t->anchor[first + i] : own[k];
       PetscInt       at = 0;
 
-      while (at < n && vertex[at] != a) ++at;
-      if (at == n) vertex[n++] = a;
-      W[k * ABUT_MAX_CELL_VERTICES + at] += count == 1 ? 1. : 0.5;
-      if (count == 2) *hanging = PETSC_TRUE;
+      while (at < n && node[at] != a) ++at;
+      if (at == n) node[n++] = a;
+      W[k * ABUT_CELL_ANCHORS_MAX + at] += count ? t->weight[first + i] : 1.;
     }
   }
   return n;
 }
 
-/* W^T K W: the element matrix seen by the vertices with unknowns */
-static void AbutCellCondense_Private(PetscInt corners, PetscInt n, const PetscReal K[], const PetscReal W[], PetscReal out[])
+/* W^T K W: the element matrix seen by the nodes with unknowns */
+static void AbutCellCondense_Private(PetscInt nodes, PetscInt n, const PetscReal K[], const PetscReal W[], PetscReal out[])
 {
-  for (PetscInt a = 0; a < n; ++a)
+  PetscReal KW[4 * ABUT_CELL_NODES_MAX * ABUT_CELL_ANCHORS_MAX];
+
+  for (PetscInt i = 0; i < 4 * nodes * n; ++i) KW[i] = 0.;
+  for (PetscInt i = 0; i < 4 * n * n; ++i) out[i] = 0.;
+  for (PetscInt l = 0; l < nodes; ++l)
     for (PetscInt b = 0; b < n; ++b) {
-      PetscReal s[4] = {0., 0., 0., 0.};
+      const PetscReal w = W[l * ABUT_CELL_ANCHORS_MAX + b];
 
-      for (PetscInt k = 0; k < corners; ++k) {
-        const PetscReal wk = W[k * ABUT_MAX_CELL_VERTICES + a];
+      for (PetscInt k = 0; w != 0. && k < 4 * nodes; ++k) KW[k / 2 * 2 * n + 2 * b + k % 2] += w * K[k / 2 * 2 * nodes + 2 * l + k % 2];
+    }
+  for (PetscInt k = 0; k < nodes; ++k)
+    for (PetscInt a = 0; a < n; ++a) {
+      const PetscReal w = W[k * ABUT_CELL_ANCHORS_MAX + a];
 
-        if (wk == 0.) continue;
-        for (PetscInt l = 0; l < corners; ++l) {
-          const PetscReal w = wk * W[l * ABUT_MAX_CELL_VERTICES + b];
-
-          if (w == 0.) continue;
-          for (PetscInt i = 0; i < 4; ++i) s[i] += w * K[(2 * k + i / 2) * 2 * corners + 2 * l + i % 2];
-        }
-      }
-      for (PetscInt i = 0; i < 4; ++i) out[(2 * a + i / 2) * 2 * n + 2 * b + i % 2] = s[i];
+      for (PetscInt i = 0; w != 0. && i < 4 * n; ++i) out[(2 * a) * 2 * n + i] += w * KW[(2 * k) * 2 * n + i];
     }
 }
 
 /* Pattern first: MatSetPreallocationCOO() wants all index pairs in the order in which the values will come */
 static PetscErrorCode AbutBodyPattern_Private(AbutBody body, const AbutMeshTopology *t, PetscCount *count)
 {
-  PetscInt  *row, *column, vertex[ABUT_MAX_CELL_VERTICES];
-  PetscReal  W[4 * ABUT_MAX_CELL_VERTICES];
+  PetscInt  *row, *column, node[ABUT_CELL_ANCHORS_MAX];
+  PetscReal  W[ABUT_CELL_NODES_MAX * ABUT_CELL_ANCHORS_MAX];
   PetscBool  hanging;
   PetscCount n = 0;
 
   PetscFunctionBegin;
   for (PetscInt c = 0; c < t->ncells; ++c) {
-    const PetscInt m = AbutCellAnchors_Private(t, c, vertex, W, &hanging);
+    const PetscInt m = AbutCellAnchors_Private(t, c, node, W, &hanging);
 
     n += 4 * m * m;
   }
@@ -110,12 +72,12 @@ static PetscErrorCode AbutBodyPattern_Private(AbutBody body, const AbutMeshTopol
   *count = n;
   n      = 0;
   for (PetscInt c = 0; c < t->ncells; ++c) {
-    const PetscInt m = AbutCellAnchors_Private(t, c, vertex, W, &hanging);
+    const PetscInt m = AbutCellAnchors_Private(t, c, node, W, &hanging);
 
     for (PetscInt a = 0; a < 2 * m; ++a)
       for (PetscInt b = 0; b < 2 * m; ++b) {
-        row[n]      = 2 * t->global[t->unknown[vertex[a / 2]]] + a % 2;
-        column[n++] = 2 * t->global[t->unknown[vertex[b / 2]]] + b % 2;
+        row[n]      = 2 * t->global[t->unknown[node[a / 2]]] + a % 2;
+        column[n++] = 2 * t->global[t->unknown[node[b / 2]]] + b % 2;
       }
   }
   PetscCall(MatCreate(PetscObjectComm((PetscObject)body), &body->A));
@@ -129,8 +91,8 @@ static PetscErrorCode AbutBodyPattern_Private(AbutBody body, const AbutMeshTopol
 
 static PetscErrorCode AbutBodyValues_Private(AbutBody body, const AbutMeshTopology *t, PetscCount count)
 {
-  PetscInt       vertex[ABUT_MAX_CELL_VERTICES];
-  PetscReal      W[4 * ABUT_MAX_CELL_VERTICES], K[64], *value;
+  PetscInt       node[ABUT_CELL_ANCHORS_MAX];
+  PetscReal      W[ABUT_CELL_NODES_MAX * ABUT_CELL_ANCHORS_MAX], K[4 * ABUT_CELL_NODES_MAX * ABUT_CELL_NODES_MAX], *value;
   PetscBool      hanging;
   PetscCount     n = 0;
   PetscLogDouble start, end;
@@ -139,11 +101,11 @@ static PetscErrorCode AbutBodyValues_Private(AbutBody body, const AbutMeshTopolo
   PetscCall(PetscMalloc1(count, &value));
   PetscCall(PetscTime(&start));
   for (PetscInt c = 0; c < t->ncells; ++c) {
-    const PetscInt m = AbutCellAnchors_Private(t, c, vertex, W, &hanging);
+    const PetscInt m = AbutCellAnchors_Private(t, c, node, W, &hanging);
 
     if (hanging) {
       PetscCall(AbutCellStiffness_Private(body, c, K));
-      AbutCellCondense_Private(t->corners, m, K, W, value + n);
+      AbutCellCondense_Private(t->nodes, m, K, W, value + n);
     } else PetscCall(AbutCellStiffness_Private(body, c, value + n));
     n += 4 * m * m;
   }

@@ -20,21 +20,23 @@
 PetscErrorCode AbutBodyGetCellStress(AbutBody body, PetscInt c, const PetscReal xi[2], PetscReal s[3])
 {
   const AbutMeshTopology *t;
-  PetscReal               x[2], N[4], G[8], det, g[4] = {0., 0., 0., 0.}, trace;
+  PetscReal               x[2], N[ABUT_CELL_NODES_MAX], G[2 * ABUT_CELL_NODES_MAX], det, g[4] = {0., 0., 0., 0.}, trace;
 
   PetscFunctionBegin;
   PetscCall(AbutMeshGetTopology(body->mesh, &t));
   PetscCall(AbutMeshMapCell(body->mesh, c, xi, x, N, G, &det));
-  for (PetscInt k = 0; k < t->corners; ++k) {
-    const PetscReal *u = body->vertexu + 2 * t->cell[t->corners * c + k];
+  for (PetscInt k = 0; k < t->nodes; ++k) {
+    const PetscReal *u = body->nodeu + 2 * t->cellnode[t->nodes * c + k];
 
     for (PetscInt i = 0; i < 2; ++i)
       for (PetscInt j = 0; j < 2; ++j) g[2 * i + j] += u[i] * G[2 * k + j];
   }
-  trace = body->lambda * (g[0] + g[3]);
-  s[0]  = trace + 2. * body->mu * g[0];
-  s[1]  = trace + 2. * body->mu * g[3];
-  s[2]  = body->mu * (g[1] + g[2]);
+  trace = g[0] + g[3];
+  if (body->meandilatation) PetscCall(AbutCellDilatation_Private(body, c, &trace));
+  trace *= body->lambda;
+  s[0] = trace + 2. * body->mu * g[0];
+  s[1] = trace + 2. * body->mu * g[3];
+  s[2] = body->mu * (g[1] + g[2]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -58,10 +60,11 @@ PetscErrorCode AbutBodyGetCellStress(AbutBody body, PetscInt c, const PetscReal 
 @*/
 PetscErrorCode AbutBodyGetCellPoint(AbutBody body, PetscInt c, const PetscReal xi[2], PetscReal x[2], PetscReal *det)
 {
-  PetscReal N[4], G[8];
+  PetscReal J[4];
 
   PetscFunctionBegin;
-  PetscCall(AbutMeshMapCell(body->mesh, c, xi, x, N, G, det));
+  PetscCall(AbutMeshMapPoint(body->mesh, c, xi, x, J));
+  *det = J[0] * J[3] - J[1] * J[2];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -112,7 +115,7 @@ PetscErrorCode AbutVonMises(const PetscReal s[3], PetscReal poisson, PetscReal *
 PetscErrorCode AbutBodyGetPointValues(AbutBody body, const PetscReal x[2], PetscReal value[7])
 {
   const AbutMeshTopology *t;
-  PetscReal               sum[6] = {0., 0., 0., 0., 0., 0.}, xi[2], at[2], N[4], G[8], det, s[3];
+  PetscReal               sum[6] = {0., 0., 0., 0., 0., 0.}, xi[2], N[ABUT_CELL_NODES_MAX], dN[2 * ABUT_CELL_NODES_MAX], s[3];
   PetscBool               inside;
 
   PetscFunctionBegin;
@@ -120,10 +123,10 @@ PetscErrorCode AbutBodyGetPointValues(AbutBody body, const PetscReal x[2], Petsc
   for (PetscInt c = 0; c < t->ncells; ++c) {
     PetscCall(AbutMeshInvertCell(body->mesh, c, x, xi, &inside));
     if (!inside) continue;
-    PetscCall(AbutMeshMapCell(body->mesh, c, xi, at, N, G, &det));
+    PetscCall(AbutMeshEvaluateBasis(body->mesh, xi, N, dN));
     PetscCall(AbutBodyGetCellStress(body, c, xi, s));
-    for (PetscInt k = 0; k < t->corners; ++k)
-      for (PetscInt d = 0; d < 2; ++d) sum[d] += N[k] * body->vertexu[2 * t->cell[t->corners * c + k] + d];
+    for (PetscInt k = 0; k < t->nodes; ++k)
+      for (PetscInt d = 0; d < 2; ++d) sum[d] += N[k] * body->nodeu[2 * t->cellnode[t->nodes * c + k] + d];
     for (PetscInt i = 0; i < 3; ++i) sum[2 + i] += s[i];
     sum[5] += 1.;
   }
@@ -185,17 +188,17 @@ PetscErrorCode AbutBodyGetWork(AbutBody body, PetscReal *work)
 PetscErrorCode AbutBodyGetEnergy(AbutBody body, PetscReal *strain, PetscReal *work)
 {
   const AbutMeshTopology *t;
-  PetscReal               K[64], sum = 0.;
+  PetscReal               K[4 * ABUT_CELL_NODES_MAX * ABUT_CELL_NODES_MAX], sum = 0.;
 
   PetscFunctionBegin;
   PetscCall(AbutMeshGetTopology(body->mesh, &t));
   for (PetscInt c = 0; c < t->ncells; ++c) {
-    const PetscInt *v = t->cell + t->corners * c, n = 2 * t->corners;
+    const PetscInt *node = t->cellnode + t->nodes * c, n = 2 * t->nodes;
 
     PetscCall(AbutCellStiffness_Private(body, c, K));
     for (PetscInt i = 0; i < n; ++i)
       for (PetscInt j = 0; j < n; ++j)
-        sum += 0.5 * K[n * i + j] * body->vertexu[2 * v[i / 2] + i % 2] * body->vertexu[2 * v[j / 2] + j % 2];
+        sum += 0.5 * K[n * i + j] * body->nodeu[2 * node[i / 2] + i % 2] * body->nodeu[2 * node[j / 2] + j % 2];
   }
   PetscCallMPI(MPI_Allreduce(&sum, strain, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
   PetscCall(AbutBodyGetWork(body, work));

@@ -151,7 +151,7 @@ static PetscErrorCode AbutEstimatorGetFloor_Private(AbutBody body, const AbutMes
 
   PetscFunctionBegin;
   PetscCall(AbutBodyGetMaterial(body, &young, &poisson));
-  PetscCall(AbutBodyGetVertexDisplacement(body, &u));
+  PetscCall(AbutBodyGetNodeDisplacement(body, &u));
   for (PetscInt i = 0; i < 2 * t->nvertices; ++i) umax = PetscMax(umax, PetscAbsReal(u[i]));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &umax, 1, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)body)));
   *floor = PetscSqr(1e-10 * young * umax) / area;

@@ -22,6 +22,44 @@ static void AbutCellShape_Private(PetscInt corners, const PetscReal xi[2], Petsc
 }
 
 /*@C
+   AbutMeshMapPoint - Maps a reference point into a local cell, which is straight, whatever the order of the displacement
+
+   Not Collective
+
+   Input Parameters:
++  mesh - the mesh
+.  c    - local cell
+-  xi   - [2] reference point: [-1,1]^2 for quads, (0,0)(1,0)(0,1) for triangles
+
+   Output Parameters:
++  x - [2] the point in space
+-  J - [4] the Jacobian by rows: J[2*i+j] = dx_i/dxi_j, length
+
+   Level: developer
+
+.seealso: `AbutMeshMapCell()`, `AbutMeshInvertCell()`
+@*/
+PetscErrorCode AbutMeshMapPoint(AbutMesh mesh, PetscInt c, const PetscReal xi[2], PetscReal x[2], PetscReal J[4])
+{
+  const AbutMeshTopology *t = &mesh->topology;
+  const PetscInt         *v = t->cell + t->corners * c;
+  PetscReal               N[4], dN[8];
+
+  PetscFunctionBegin;
+  AbutCellShape_Private(t->corners, xi, N, dN);
+  for (PetscInt i = 0; i < 2; ++i) {
+    x[i] = J[2 * i] = J[2 * i + 1] = 0.;
+    for (PetscInt k = 0; k < t->corners; ++k) {
+      const PetscReal xk = t->x[2 * v[k] + i];
+
+      x[i] += N[k] * xk;
+      for (PetscInt j = 0; j < 2; ++j) J[2 * i + j] += xk * dN[2 * k + j];
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
    AbutMeshMapCell - Maps a reference point into a local cell
 
    Not Collective
@@ -33,35 +71,30 @@ static void AbutCellShape_Private(PetscInt corners, const PetscReal xi[2], Petsc
 
    Output Parameters:
 +  x   - [2] the point in space
-.  N   - [corners] shape functions
-.  G   - [2*corners] their gradients in space, 1/length
+.  N   - [nodes] shape functions, at most `ABUT_CELL_NODES_MAX`
+.  G   - [2*nodes] their gradients in space, 1/length
 -  det - determinant of the map's Jacobian, area
 
    Level: developer
 
-.seealso: `AbutMeshInvertCell()`, `AbutMeshGetTopology()`
+.seealso: `AbutMeshInvertCell()`, `AbutMeshGetTopology()`, `AbutMeshGetReferenceNodes()`
 @*/
 PetscErrorCode AbutMeshMapCell(AbutMesh mesh, PetscInt c, const PetscReal xi[2], PetscReal x[2], PetscReal N[], PetscReal G[],
                                PetscReal *det)
 {
-  const AbutMeshTopology *t = &mesh->topology;
-  const PetscInt         *v = t->cell + t->corners * c;
-  PetscReal               dN[8], J[4] = {0., 0., 0., 0.}, d;
+  const AbutBasis *b = &mesh->basis;
+  PetscReal        J[4], d;
 
   PetscFunctionBegin;
-  AbutCellShape_Private(t->corners, xi, N, dN);
-  x[0] = x[1] = 0.;
-  for (PetscInt k = 0; k < t->corners; ++k)
-    for (PetscInt i = 0; i < 2; ++i) {
-      const PetscReal xk = t->x[2 * v[k] + i];
-
-      x[i] += N[k] * xk;
-      for (PetscInt j = 0; j < 2; ++j) J[2 * i + j] += xk * dN[2 * k + j];
-    }
+  PetscCall(AbutMeshMapPoint(mesh, c, xi, x, J));
+  if (b->order == 1) AbutCellShape_Private(b->corners, xi, N, G);
+  else AbutBasisEvaluate_Private(b, xi, N, G);
   d = J[0] * J[3] - J[1] * J[2];
-  for (PetscInt k = 0; k < t->corners; ++k) {
-    G[2 * k]     = (dN[2 * k] * J[3] - dN[2 * k + 1] * J[2]) / d;
-    G[2 * k + 1] = (-dN[2 * k] * J[1] + dN[2 * k + 1] * J[0]) / d;
+  for (PetscInt k = 0; k < b->nodes; ++k) {
+    const PetscReal dN[2] = {G[2 * k], G[2 * k + 1]};
+
+    G[2 * k]     = (dN[0] * J[3] - dN[1] * J[2]) / d;
+    G[2 * k + 1] = (-dN[0] * J[1] + dN[1] * J[0]) / d;
   }
   *det = d;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -123,7 +156,7 @@ PetscErrorCode AbutMeshInvertCell(AbutMesh mesh, PetscInt c, const PetscReal x[2
   const AbutMeshTopology *t      = &mesh->topology;
   const PetscInt         *v      = t->cell + t->corners * c;
   const PetscReal         margin = 1e-9;
-  PetscReal               N[4], G[8], at[2], det, lo[2] = {PETSC_MAX_REAL, PETSC_MAX_REAL}, hi[2] = {PETSC_MIN_REAL, PETSC_MIN_REAL};
+  PetscReal               at[2], J[4], lo[2] = {PETSC_MAX_REAL, PETSC_MAX_REAL}, hi[2] = {PETSC_MIN_REAL, PETSC_MIN_REAL};
 
   PetscFunctionBegin;
   *inside = PETSC_FALSE;
@@ -136,22 +169,12 @@ PetscErrorCode AbutMeshInvertCell(AbutMesh mesh, PetscInt c, const PetscReal x[2
     if (x[i] < lo[i] - margin * (hi[i] - lo[i]) || x[i] > hi[i] + margin * (hi[i] - lo[i])) PetscFunctionReturn(PETSC_SUCCESS);
   xi[0] = xi[1] = t->corners == 3 ? 1. / 3. : 0.;
   for (PetscInt it = 0; it < 20; ++it) {
-    PetscReal step[2] = {0., 0.};
+    PetscReal step[2], det;
 
-    PetscCall(AbutMeshMapCell(mesh, c, xi, at, N, G, &det));
-    /* the columns of the inverse Jacobian are the gradients of the reference coordinates */
-    for (PetscInt j = 0; j < 2; ++j) {
-      if (t->corners == 3) {
-        step[0] += G[2 + j] * (x[j] - at[j]);
-        step[1] += G[4 + j] * (x[j] - at[j]);
-      } else
-        for (PetscInt k = 0; k < 4; ++k) {
-          static const PetscReal s[4] = {-1., 1., 1., -1.}, r[4] = {-1., -1., 1., 1.};
-
-          step[0] += s[k] * G[2 * k + j] * (x[j] - at[j]);
-          step[1] += r[k] * G[2 * k + j] * (x[j] - at[j]);
-        }
-    }
+    PetscCall(AbutMeshMapPoint(mesh, c, xi, at, J));
+    det     = J[0] * J[3] - J[1] * J[2];
+    step[0] = (J[3] * (x[0] - at[0]) - J[1] * (x[1] - at[1])) / det;
+    step[1] = (J[0] * (x[1] - at[1]) - J[2] * (x[0] - at[0])) / det;
     xi[0] += step[0];
     xi[1] += step[1];
     if (PetscAbsReal(step[0]) + PetscAbsReal(step[1]) < 1e-13) break;

@@ -31,12 +31,12 @@ static PetscErrorCode AbutMeshInitializePackage_Private(void)
 .  -mesh_cells <nx,ny>         - cells of the first mesh along each direction (triangles: twice as many)
 .  -mesh_size <expression>     - largest side a cell may have, an expression in x and y: cells of the first mesh are split until they obey
 .  -mesh_shape <quad|triangle> - shape of the cells
--  -mesh_order <1>             - polynomial order of the displacement
+-  -mesh_order <1>             - polynomial order of the displacement: 1 to 4 on quads, 1 to 3 on triangles
 
    Level: intermediate
 
    Note:
-   Limits: plane boxes with sides left, right, bottom, top, order 1.
+   Limits: plane boxes with sides left, right, bottom, top.
 
 .seealso: `AbutMeshSetFromOptions()`, `AbutMeshSetBox()`, `AbutMeshAdapt()`, `AbutMeshDestroy()`
 @*/
@@ -46,6 +46,7 @@ PetscErrorCode AbutMeshCreate(MPI_Comm comm, AbutMesh *mesh)
   PetscAssertPointer(mesh, 2);
   PetscCall(AbutMeshInitializePackage_Private());
   PetscCall(PetscHeaderCreate(*mesh, ABUTMESH_CLASSID, "AbutMesh", "Mesh of a body", "Mesh", comm, AbutMeshDestroy, AbutMeshView));
+  (*mesh)->order = 1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -90,6 +91,56 @@ PetscErrorCode AbutMeshSetBox(AbutMesh mesh, const PetscReal lower[2], const Pet
 }
 
 /*@
+   AbutMeshSetOrder - The polynomial order of the displacement
+
+   Logically Collective
+
+   Input Parameters:
++  mesh  - the mesh, its box set
+-  order - 1 to 4 on quads, 1 to 3 on triangles
+
+   Level: intermediate
+
+.seealso: `AbutMeshSetBox()`, `AbutMeshGetOrder()`
+@*/
+PetscErrorCode AbutMeshSetOrder(AbutMesh mesh, PetscInt order)
+{
+  const char    *prefix = ((PetscObject)mesh)->prefix ? ((PetscObject)mesh)->prefix : "";
+  const PetscInt most   = mesh->shape == ABUT_QUAD ? ABUT_ORDER_MAX : ABUT_ORDER_MAX - 1;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(mesh, ABUTMESH_CLASSID, 1);
+  PetscCheck(!mesh->setupcalled, PetscObjectComm((PetscObject)mesh), PETSC_ERR_ORDER, "Call AbutMeshSetOrder() before AbutMeshSetUp()");
+  AbutCheckInput(order >= 1 && order <= most, PetscObjectComm((PetscObject)mesh),
+                 "%smesh_order: %" PetscInt_FMT " is not there; give 1 to %" PetscInt_FMT " for cells of shape %s", prefix, order, most,
+                 AbutShapeNames[mesh->shape]);
+  mesh->order = order;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutMeshGetOrder - The polynomial order of the displacement
+
+   Not Collective
+
+   Input Parameter:
+.  mesh - the mesh
+
+   Output Parameter:
+.  order - 1 to 4
+
+   Level: intermediate
+
+.seealso: `AbutMeshSetOrder()`
+@*/
+PetscErrorCode AbutMeshGetOrder(AbutMesh mesh, PetscInt *order)
+{
+  PetscFunctionBegin;
+  *order = mesh->order;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
    AbutMeshSetFromOptions - Reads the keys of a mesh
 
    Collective
@@ -105,8 +156,8 @@ PetscErrorCode AbutMeshSetFromOptions(AbutMesh mesh)
 {
   const char *prefix   = ((PetscObject)mesh)->prefix ? ((PetscObject)mesh)->prefix : "";
   PetscReal   box[4]   = {mesh->lower[0], mesh->lower[1], mesh->upper[0], mesh->upper[1]};
-  PetscInt    cells[2] = {mesh->cells[0], mesh->cells[1]}, shape = mesh->shape, order = 1;
-  PetscBool   hasbox, hascells, hasshape, hassize;
+  PetscInt    cells[2] = {mesh->cells[0], mesh->cells[1]}, shape = mesh->shape, order = mesh->order;
+  PetscBool   hasbox, hascells, hasshape, hasorder, hassize;
   char        size[PETSC_MAX_PATH_LEN] = "", key[256];
 
   PetscFunctionBegin;
@@ -115,17 +166,17 @@ PetscErrorCode AbutMeshSetFromOptions(AbutMesh mesh)
   PetscCall(AbutOptionsReals(PetscOptionsObject, "-mesh_box", "x0,y0,x1,y1", 4, box, &hasbox));
   PetscCall(AbutOptionsInts(PetscOptionsObject, "-mesh_cells", "nx,ny", 2, cells, &hascells));
   PetscCall(AbutOptionsEnum(PetscOptionsObject, "-mesh_shape", "Shape of the cells", AbutShapeNames, &shape, &hasshape));
-  PetscCall(AbutOptionsInt(PetscOptionsObject, "-mesh_order", "Order of the displacement", &order, NULL));
+  PetscCall(AbutOptionsInt(PetscOptionsObject, "-mesh_order", "Order of the displacement", &order, &hasorder));
   PetscCall(AbutOptionsString(PetscOptionsObject, "-mesh_size", "Largest side of the cells", size, sizeof(size), &hassize));
   PetscOptionsEnd();
   PetscCall(PetscSNPrintf(key, sizeof(key), "%smesh_size", prefix));
   PetscCall(AbutExpressionDestroy(&mesh->size));
   if (hassize) PetscCall(AbutExpressionCreate(PetscObjectComm((PetscObject)mesh), key, size, &mesh->size));
-  AbutCheckInput(order == 1, PetscObjectComm((PetscObject)mesh), "%smesh_order: %" PetscInt_FMT " is not there; give 1", prefix, order);
   AbutCheckInput(mesh->boxset || (hasbox && hascells), PetscObjectComm((PetscObject)mesh), "%smesh_%s: missing; give %s", prefix,
                  hasbox ? "cells" : "box",
                  hasbox ? "the cells along each direction, for example 8,2" : "the corners x0,y0,x1,y1 of the box, for example 0,0,4,1");
   if (hasbox || hascells || hasshape) PetscCall(AbutMeshSetBox(mesh, box, box + 2, cells, (AbutShape)shape));
+  if (hasorder || hasshape) PetscCall(AbutMeshSetOrder(mesh, order));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -339,9 +390,9 @@ PetscErrorCode AbutMeshView(AbutMesh mesh, PetscViewer viewer)
   PetscCall(AbutMeshGetCellCount(mesh, &ncells));
   PetscCall(AbutMeshGetMeasures(mesh, &m));
   PetscCall(PetscViewerASCIIPrintf(viewer,
-                                   "mesh: %s, %" PetscInt_FMT " cells, %" PetscInt_FMT
-                                   " vertices with unknowns, levels up to %" PetscInt_FMT ", smallest side %g\n",
-                                   AbutShapeNames[mesh->shape], ncells, mesh->topology.nglobal, m.level_max, (double)m.h_min));
+                                   "mesh: %s of order %" PetscInt_FMT ", %" PetscInt_FMT " cells, %" PetscInt_FMT
+                                   " nodes with unknowns, levels up to %" PetscInt_FMT ", smallest side %g\n",
+                                   AbutShapeNames[mesh->shape], mesh->order, ncells, mesh->topology.nglobal, m.level_max, (double)m.h_min));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

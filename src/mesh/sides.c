@@ -18,11 +18,11 @@ static PetscInt AbutSideOf_Private(AbutMesh mesh, const PetscReal a[2], const Pe
 PetscErrorCode AbutMeshSidesBuild_Private(AbutMesh mesh)
 {
   AbutMeshTopology *t    = &mesh->topology;
-  PetscInt          room = 0, *edge, *cell;
+  PetscInt          room = 0, *edge, *node, *cell;
 
   PetscFunctionBegin;
   for (PetscInt pass = 0; pass < 2; ++pass) {
-    if (pass) PetscCall(PetscMalloc2(3 * room, &edge, room, &cell));
+    if (pass) PetscCall(PetscMalloc3(3 * room, &edge, (t->order + 1) * room, &node, room, &cell));
     for (PetscInt c = 0; c < t->ncells; ++c)
       for (PetscInt k = 0; k < t->corners; ++k) {
         const PetscInt a = t->cell[t->corners * c + k], b = t->cell[t->corners * c + (k + 1) % t->corners],
@@ -36,10 +36,12 @@ PetscErrorCode AbutMeshSidesBuild_Private(AbutMesh mesh)
         edge[3 * t->nsideedges]     = a;
         edge[3 * t->nsideedges + 1] = b;
         edge[3 * t->nsideedges + 2] = side;
-        cell[t->nsideedges++]       = c;
+        AbutMeshGetEdgeNodes_Private(t, t->celledge[t->corners * c + k], a, node + (t->order + 1) * t->nsideedges);
+        cell[t->nsideedges++] = c;
       }
   }
   t->sideedge = edge;
+  t->sidenode = node;
   t->sidecell = cell;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,37 +1,30 @@
 #include <abut/private/meshimpl.h> /*I "abutmesh.h" I*/
 
-/* Plain arrays of the local part of a DMPLEX: coordinates, cells, hanging vertices, and the numbering of the unknowns */
+/* Plain arrays of the local part of a DMPLEX: coordinates and cells; sides are in edges.c, nodes and unknowns in nodes.c */
 
+/* Room for all nodes: those inside sides and cells get theirs when these are known */
 static PetscErrorCode AbutTopologyVertices_Private(AbutMesh mesh, PetscInt vStart)
 {
-  AbutMeshTopology *t = &mesh->topology;
-  PetscReal        *x;
-  PetscInt         *anchor;
-  const PetscReal  *xa;
-  Vec               coordinates;
-  PetscSection      section;
+  AbutMeshTopology  *t = &mesh->topology;
+  PetscReal         *x;
+  const PetscScalar *xa;
+  Vec                coordinates;
+  PetscSection       section;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc2(2 * t->nvertices, &x, 2 * t->nvertices, &anchor));
+  PetscCall(PetscMalloc1(2 * t->nnodes, &x));
   PetscCall(DMGetCoordinatesLocal(mesh->dm, &coordinates));
   PetscCall(DMGetCoordinateSection(mesh->dm, &section));
   PetscCall(VecGetArrayRead(coordinates, &xa));
   for (PetscInt v = 0; v < t->nvertices; ++v) {
-    PetscInt        offset, parent;
-    const PetscInt *cone;
+    PetscInt offset;
 
     PetscCall(PetscSectionGetOffset(section, v + vStart, &offset));
     x[2 * v]     = xa[offset];
     x[2 * v + 1] = xa[offset + 1];
-    PetscCall(DMPlexGetTreeParent(mesh->dm, v + vStart, &parent, NULL));
-    anchor[2 * v] = anchor[2 * v + 1] = -1;
-    if (parent == v + vStart) continue;
-    PetscCall(DMPlexGetCone(mesh->dm, parent, &cone)); /* a hanging vertex is the middle of the coarse side above it */
-    for (PetscInt i = 0; i < 2; ++i) anchor[2 * v + i] = cone[i] - vStart;
   }
   PetscCall(VecRestoreArrayRead(coordinates, &xa));
-  t->x      = x;
-  t->anchor = anchor;
+  t->x = x;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -66,69 +59,28 @@ static PetscErrorCode AbutTopologyCells_Private(AbutMesh mesh, PetscInt cStart, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Hanging vertices carry no unknowns. Owned vertices come first, then those of other ranks, each in the order of the DMPLEX. */
-static PetscErrorCode AbutTopologyNumbering_Private(AbutMesh mesh, PetscInt vStart)
-{
-  AbutMeshTopology  *t = &mesh->topology;
-  PetscSF            sf;
-  PetscInt           pStart, pEnd, nroots, nleaves, *number, *unknown, *global, next = 0, ghost;
-  const PetscInt    *leaves;
-  const PetscSFNode *remote;
-
-  PetscFunctionBegin;
-  PetscCall(DMGetPointSF(mesh->dm, &sf));
-  PetscCall(DMPlexGetChart(mesh->dm, &pStart, &pEnd));
-  PetscCall(PetscSFGetGraph(sf, &nroots, &nleaves, &leaves, &remote));
-  PetscCall(PetscMalloc1(pEnd - pStart, &number));
-  PetscCall(PetscMalloc2(t->nvertices, &unknown, t->nvertices, &global));
-  for (PetscInt p = 0; p < pEnd - pStart; ++p) number[p] = 0;
-  for (PetscInt l = 0; l < nleaves; ++l) number[leaves ? leaves[l] : l] = -1; /* owned elsewhere */
-  for (PetscInt v = 0; v < t->nvertices; ++v) {
-    unknown[v] = -1;
-    if (t->anchor[2 * v] < 0 && number[v + vStart - pStart] >= 0) unknown[v] = next++;
-  }
-  t->nowned = next;
-  PetscCallMPI(MPI_Exscan(&t->nowned, &t->firstowned, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)mesh)));
-  PetscCallMPI(MPI_Allreduce(&t->nowned, &t->nglobal, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)mesh)));
-  {
-    PetscMPIInt rank;
-
-    PetscCallMPI(MPI_Comm_rank(PetscObjectComm((PetscObject)mesh), &rank));
-    if (!rank) t->firstowned = 0;
-  }
-  for (PetscInt v = 0; v < t->nvertices; ++v) number[v + vStart - pStart] = unknown[v] < 0 ? -1 : t->firstowned + unknown[v];
-  if (nroots >= 0) {
-    PetscCall(PetscSFBcastBegin(sf, MPIU_INT, number, number, MPI_REPLACE));
-    PetscCall(PetscSFBcastEnd(sf, MPIU_INT, number, number, MPI_REPLACE));
-  }
-  ghost = t->nowned;
-  for (PetscInt v = 0; v < t->nvertices; ++v) {
-    if (t->anchor[2 * v] >= 0) continue;
-    if (unknown[v] < 0) unknown[v] = ghost++;
-    global[unknown[v]] = number[v + vStart - pStart];
-    PetscCheck(global[unknown[v]] >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "A vertex with unknowns is not numbered by its owner");
-  }
-  t->nunknown = ghost;
-  t->unknown  = unknown;
-  t->global   = global;
-  PetscCall(PetscFree(number));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode AbutMeshTopologyBuild_Private(AbutMesh mesh)
 {
   AbutMeshTopology *t = &mesh->topology;
-  PetscInt          cStart, cEnd, vStart, vEnd;
+  PetscInt          cStart, cEnd, eStart, eEnd, vStart, vEnd, incell;
 
   PetscFunctionBegin;
   PetscCall(DMPlexGetHeightStratum(mesh->dm, 0, &cStart, &cEnd));
+  PetscCall(DMPlexGetDepthStratum(mesh->dm, 1, &eStart, &eEnd));
   PetscCall(DMPlexGetDepthStratum(mesh->dm, 0, &vStart, &vEnd));
-  t->ncells    = cEnd - cStart;
-  t->nvertices = vEnd - vStart;
+  t->order     = mesh->order;
   t->corners   = mesh->shape == ABUT_QUAD ? 4 : 3;
+  t->ncells    = cEnd - cStart;
+  t->nedges    = eEnd - eStart;
+  t->nvertices = vEnd - vStart;
+  PetscCall(AbutBasisSetUp_Private(t->corners, t->order, &mesh->basis));
+  t->nodes  = mesh->basis.nodes;
+  incell    = t->nodes - t->corners * t->order;
+  t->nnodes = t->nvertices + (t->order - 1) * t->nedges + incell * t->ncells;
   PetscCall(AbutTopologyVertices_Private(mesh, vStart));
   PetscCall(AbutTopologyCells_Private(mesh, cStart, vStart, vEnd));
-  PetscCall(AbutTopologyNumbering_Private(mesh, vStart));
+  PetscCall(AbutMeshEdgesBuild_Private(mesh));
+  PetscCall(AbutMeshNodesBuild_Private(mesh));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -137,10 +89,13 @@ PetscErrorCode AbutMeshTopologyReset_Private(AbutMesh mesh)
   AbutMeshTopology *t = &mesh->topology;
 
   PetscFunctionBegin;
-  PetscCall(PetscFree2(t->x, t->anchor));
+  PetscCall(PetscFree(t->x));
   PetscCall(PetscFree2(t->cell, t->level));
+  PetscCall(PetscFree3(t->edge, t->edgeparent, t->celledge));
+  PetscCall(PetscFree(t->cellnode));
+  PetscCall(PetscFree3(t->anchors, t->anchor, t->weight));
   PetscCall(PetscFree2(t->unknown, t->global));
-  PetscCall(PetscFree2(t->sideedge, t->sidecell));
+  PetscCall(PetscFree3(t->sideedge, t->sidenode, t->sidecell));
   PetscCall(PetscMemzero(t, sizeof(*t)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -155,13 +155,12 @@ static PetscErrorCode AbutMeshGetLevels_Triangles(AbutMesh mesh, PetscInt level[
 {
   const PetscReal first = 0.5 * (mesh->upper[0] - mesh->lower[0]) * (mesh->upper[1] - mesh->lower[1]) /
                           ((PetscReal)mesh->cells[0] * mesh->cells[1]);
-  const PetscReal xi[2] = {1. / 3., 1. / 3.};
-  PetscReal       x[2], N[3], G[6], det;
+  PetscReal area;
 
   PetscFunctionBegin;
   for (PetscInt c = 0; c < mesh->topology.ncells; ++c) {
-    PetscCall(AbutMeshMapCell(mesh, c, xi, x, N, G, &det));
-    level[c] = (PetscInt)PetscCeilReal(0.5 * PetscLog2Real(first / (0.5 * det)) - 0.1);
+    PetscCall(AbutMeshGetCellArea(mesh, c, &area));
+    level[c] = (PetscInt)PetscCeilReal(0.5 * PetscLog2Real(first / area) - 0.1);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -111,7 +111,7 @@ PetscErrorCode AbutFieldsCreate_Private(AbutBody body, Vec eta, AbutFields *f)
   PetscCall(AbutBodyGetMesh(body, &mesh));
   PetscCall(AbutMeshGetTopology(mesh, &t));
   PetscCall(AbutMeshGetCellCount(mesh, &f->ncells));
-  PetscCall(AbutBodyGetVertexDisplacement(body, &u));
+  PetscCall(AbutBodyGetNodeDisplacement(body, &u));
   f->corners = t->corners;
   PetscCall(PetscMalloc1(t->nvertices, &number));
   PetscCall(AbutFieldsNumberVertices_Private(comm, t, number, &f->nvertices));

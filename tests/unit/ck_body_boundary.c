@@ -52,10 +52,10 @@ START_TEST(the_boundary_is_one_closed_contour_with_the_body_on_the_left)
   ck_assert(b->contour[0] == 0 && b->contour[1] == b->n);
   ck_assert(b->x[0] == 1. && b->x[1] == 2.); /* begins at the lowest, leftmost corner */
   for (PetscInt i = 0; i < b->n; ++i) {
-    const PetscReal *p = b->x + 2 * i, *q = b->x + 2 * b->end[i], h = PetscAbsReal(p[0] - q[0]) + PetscAbsReal(p[1] - q[1]),
+    const PetscReal *p = b->x + 2 * i, *q = b->x + 2 * b->next[i], h = PetscAbsReal(p[0] - q[0]) + PetscAbsReal(p[1] - q[1]),
                     *n = ck_normals[b->side[i]];
 
-    ck_assert_int_eq(b->end[i], (i + 1) % b->n);
+    ck_assert_int_eq(b->next[i], (i + 1) % b->n);
     ck_assert_double_eq_tol(q[0] - p[0], -n[1] * h, 1e-15);
     ck_assert_double_eq_tol(q[1] - p[1], n[0] * h, 1e-15);
     area += 0.5 * ((p[0] - 1.) * (q[1] - 2.) - (p[1] - 2.) * (q[0] - 1.));
@@ -87,13 +87,13 @@ START_TEST(reactions_are_the_moments_of_the_tractions_that_hold_the_body)
   CkOk(PetscCalloc1(2 * b->n, &force));
   CkLinear(&linear, b->x, u, s);
   for (PetscInt i = 0; i < b->n; ++i) {
-    const PetscReal *p = b->x + 2 * i, *q = b->x + 2 * b->end[i], h = PetscAbsReal(p[0] - q[0]) + PetscAbsReal(p[1] - q[1]),
+    const PetscReal *p = b->x + 2 * i, *q = b->x + 2 * b->next[i], h = PetscAbsReal(p[0] - q[0]) + PetscAbsReal(p[1] - q[1]),
                     *n   = ck_normals[b->side[i]];
     const PetscReal t[2] = {s[0] * n[0] + s[2] * n[1], s[2] * n[0] + s[1] * n[1]};
 
     for (PetscInt d = 0; d < 2; ++d) {
       force[2 * i + d] += 0.5 * h * t[d];
-      force[2 * b->end[i] + d] += 0.5 * h * t[d];
+      force[2 * b->next[i] + d] += 0.5 * h * t[d];
     }
   }
   for (PetscInt k = 0; k < 2 * b->n; ++k) most = PetscMax(most, PetscAbsReal(force[k]));
@@ -133,7 +133,7 @@ START_TEST(given_tractions_are_projected_and_balance_the_reactions_in_force_and_
   CkOk(AbutBodySolve(body, NULL));
   CkOk(AbutBodyGetBoundary(body, &b));
   for (PetscInt i = 0; i < b->n; ++i) {
-    const PetscReal *p = b->x + 2 * i, *q = b->x + 2 * b->end[i], h = PetscAbsReal(p[0] - q[0]) + PetscAbsReal(p[1] - q[1]),
+    const PetscReal *p = b->x + 2 * i, *q = b->x + 2 * b->next[i], h = PetscAbsReal(p[0] - q[0]) + PetscAbsReal(p[1] - q[1]),
                     *t = b->traction + 4 * i;
 
     for (PetscInt k = 0; k < 2; ++k) {

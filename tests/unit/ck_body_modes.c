@@ -74,7 +74,7 @@ static Vec Motion(AbutBody body, PetscInt k)
   CkOk(AbutBodyCreateVec(body, &motion));
   CkOk(VecGetArray(motion, &a));
   for (PetscInt v = 0; v < t->nvertices; ++v)
-    if (t->anchor[2 * v] < 0 && t->unknown[v] < t->nowned) CkOk(AbutBodyGetFreeMotion(body, k, t->x + 2 * v, a + 2 * t->unknown[v]));
+    if (t->unknown[v] >= 0 && t->unknown[v] < t->nowned) CkOk(AbutBodyGetFreeMotion(body, k, t->x + 2 * v, a + 2 * t->unknown[v]));
   CkOk(VecRestoreArray(motion, &a));
   return motion;
 }
@@ -403,7 +403,7 @@ START_TEST(a_solve_and_an_increment_make_the_solve_with_both_forces)
     CheckSolved(body[k], 10. * ck_solvers[solver].residual);
     CkOk(AbutBodyGetImbalance(body[k], PETSC_TRUE, imbalance[k]));
     CkOk(AbutBodyGetEnergy(body[k], &energy[k][0], &energy[k][1]));
-    CkOk(AbutBodyGetVertexDisplacement(body[k], &vertexu));
+    CkOk(AbutBodyGetNodeDisplacement(body[k], &vertexu));
     energy[k][1] = 0.;
     for (PetscInt i = 0; i < 2 * n; ++i) energy[k][1] += PetscSqr(vertexu[i]);
     energy[k][1] = CkTotal(energy[k][1]);

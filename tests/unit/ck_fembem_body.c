@@ -180,7 +180,7 @@ static void ProjectPressure(AbutBoundary *b)
   for (PetscInt i = 0; i < b->n; ++i) {
     for (PetscInt q = 0; b->side[i] == 2 && q < 16; ++q) {
       const PetscReal s = z[q] * z[q] * z[q] * (10. - 15. * z[q] + 6. * z[q] * z[q]), ds = w[q] * 30. * PetscSqr(z[q] * (1. - z[q]));
-      const PetscReal x[2] = {(1. - s) * b->x[2 * i] + s * b->x[2 * b->end[i]], 1.};
+      const PetscReal x[2] = {(1. - s) * b->x[2 * i] + s * b->x[2 * b->next[i]], 1.};
       PetscReal       t;
 
       CkOk(Pressure(x, &t, NULL));

@@ -15,6 +15,7 @@ typedef struct {
 struct CkField {
   void (*at)(const CkField *, const PetscReal x[2], PetscReal u[2], PetscReal s[3]); /* displacement, and s11, s22, s12 */
   PetscReal young, poisson;
+  PetscInt  order;      /* of the mesh; 0 is 1 */
   CkData    data[4][2]; /* what the conditions on the sides refer to */
 };
 
@@ -99,6 +100,7 @@ static inline AbutBody CkBodyOn(MPI_Comm comm, const char name[], CkField *field
   CkOk(AbutBodyCreate(comm, name, &body));
   CkOk(AbutBodyGetMesh(body, &mesh));
   CkOk(AbutMeshSetBox(mesh, lower, upper, cells, shape));
+  if (field->order) CkOk(AbutMeshSetOrder(mesh, field->order));
   CkOk(AbutMeshSetUp(mesh));
   CkOk(AbutBodySetMaterial(body, field->young, field->poisson));
   return body;
@@ -146,7 +148,7 @@ static inline PetscReal CkNodalError(AbutBody body, const CkField *field)
   PetscReal               most[2] = {0., 0.}, u[2], s[3];
   const PetscReal        *uh;
 
-  CkOk(AbutBodyGetVertexDisplacement(body, &uh));
+  CkOk(AbutBodyGetNodeDisplacement(body, &uh));
   for (PetscInt i = 0; i < t->corners * t->ncells; ++i) {
     const PetscInt v = t->cell[i];
 
@@ -161,36 +163,35 @@ static inline PetscReal CkNodalError(AbutBody body, const CkField *field)
 }
 
 /* Of the field and of its distance from the solution: L2 norm of the displacement, energy norm (sigma:eps), 25 points a cell; relative */
+#define CK_POINTS 7
+
 static inline void CkErrors(AbutBody body, const CkField *field, PetscReal *l2, PetscReal *energy)
 {
   const AbutMeshTopology *t  = CkTopology(CkMeshOf(body));
   const PetscReal         nu = field->poisson, c = (1. + nu) / field->young;
-  PetscReal               sum[4] = {0., 0., 0., 0.}, z[5], w[5];
+  PetscReal               sum[4] = {0., 0., 0., 0.}, z[CK_POINTS], w[CK_POINTS];
   const PetscReal        *uh;
 
-  CkOk(PetscDTGaussQuadrature(5, 0., 1., z, w));
-  CkOk(AbutBodyGetVertexDisplacement(body, &uh));
+  CkOk(PetscDTGaussQuadrature(CK_POINTS, 0., 1., z, w));
+  CkOk(AbutBodyGetNodeDisplacement(body, &uh));
   for (PetscInt cell = 0; cell < t->ncells; ++cell)
-    for (PetscInt q = 0; q < 25; ++q) {
-      const PetscReal a = z[q / 5], b = z[q % 5], *corner[4];
+    for (PetscInt q = 0; q < CK_POINTS * CK_POINTS; ++q) {
+      const PetscReal a = z[q / CK_POINTS], b = z[q % CK_POINTS], wab = w[q / CK_POINTS] * w[q % CK_POINTS];
       PetscReal       xi[2] =
         {
           2. * a - 1., 2. * b - 1.
       },
-                x[2], N[4], G[8], det, s[2][3], u[2][2] = {{0., 0.}}, weight = 4. * w[q / 5] * w[q % 5];
+                x[2], N[ABUT_CELL_NODES_MAX], G[2 * ABUT_CELL_NODES_MAX], det, s[2][3], u[2][2] = {{0., 0.}, {0., 0.}}, weight = 4. * wab;
 
       if (t->corners == 3) { /* a square squeezed to a triangle */
         xi[0]  = a;
         xi[1]  = b * (1. - a);
-        weight = w[q / 5] * w[q % 5] * (1. - a);
+        weight = wab * (1. - a);
       }
       CkOk(AbutMeshMapCell(CkMeshOf(body), cell, xi, x, N, G, &det));
       CkOk(AbutBodyGetCellStress(body, cell, xi, s[0]));
       field->at(field, x, u[1], s[1]);
-      for (PetscInt k = 0; k < t->corners; ++k) {
-        corner[k] = uh + 2 * t->cell[t->corners * cell + k];
-        for (PetscInt d = 0; d < 2; ++d) u[0][d] += N[k] * corner[k][d];
-      }
+      for (PetscInt k = 0; k < 2 * t->nodes; ++k) u[0][k % 2] += N[k / 2] * uh[2 * t->cellnode[t->nodes * cell + k / 2] + k % 2];
       for (PetscInt of = 0; of < 2; ++of) {
         const PetscReal *e = s[1];
         PetscReal        d[3];

@@ -42,14 +42,16 @@ static inline void BendingDisplacement(PetscReal E, PetscReal nu, const PetscRea
 static inline PetscErrorCode BoundaryAllocate(PetscInt n, PetscInt ncontours, AbutBoundary *b)
 {
   PetscFunctionBegin;
+  b->order     = 1;
   b->n         = n;
+  b->nnodes    = n;
   b->ncontours = ncontours;
-  PetscCall(PetscCalloc5(ncontours + 1, &b->contour, n, &b->end, 2 * n, &b->x, 2 * n, &b->u, n, &b->side));
+  PetscCall(PetscCalloc5(ncontours + 1, &b->contour, n, &b->next, 2 * n, &b->x, 2 * n, &b->u, n, &b->side));
   PetscCall(PetscCalloc4(2 * n, &b->condition, 4 * n, &b->traction, 2 * n, &b->reaction, 2 * n, &b->contact));
-  for (PetscInt i = 0; i < n; ++i) b->end[i] = i + 1;
+  for (PetscInt i = 0; i < n; ++i) b->next[i] = i + 1;
   for (PetscInt c = 0; c < ncontours; ++c) {
-    b->contour[c + 1]             = (c + 1) * n / ncontours;
-    b->end[b->contour[c + 1] - 1] = b->contour[c];
+    b->contour[c + 1]              = (c + 1) * n / ncontours;
+    b->next[b->contour[c + 1] - 1] = b->contour[c];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -57,7 +59,7 @@ static inline PetscErrorCode BoundaryAllocate(PetscInt n, PetscInt ncontours, Ab
 static inline PetscErrorCode BoundaryFree(AbutBoundary *b)
 {
   PetscFunctionBegin;
-  PetscCall(PetscFree5(b->contour, b->end, b->x, b->u, b->side));
+  PetscCall(PetscFree5(b->contour, b->next, b->x, b->u, b->side));
   PetscCall(PetscFree4(b->condition, b->traction, b->reaction, b->contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -105,7 +107,7 @@ static inline PetscErrorCode BoundaryCreateBox(const PetscReal lo[2], const Pets
 static inline void BoundaryFill(const Field *f, const AbutConditionType condition[], AbutBoundary *b)
 {
   for (PetscInt i = 0; i < b->n; ++i) {
-    const PetscInt   node[2] = {i, b->end[i]};
+    const PetscInt   node[2] = {i, b->next[i]};
     const PetscReal *x[2] = {&b->x[2 * node[0]], &b->x[2 * node[1]]}, dx[2] = {x[1][0] - x[0][0], x[1][1] - x[0][1]};
     PetscReal        t[2][2], s[3]; /* tractions at the ends, times the length */
 

@@ -4,8 +4,9 @@
 #include <petsc/private/petscimpl.h>
 #include <petsctime.h>
 
-#define ABUT_MAX_SIDES 64
-#define ABUT_MAX_MODES 3
+#define ABUT_MAX_SIDES             64
+#define ABUT_MAX_MODES             3
+#define ABUT_ALMOST_INCOMPRESSIBLE 0.49 /* Poisson's ratio from which quads of order 1 use the mean dilatation of each cell */
 
 /* What the scene says about one component of one side */
 typedef struct {
@@ -13,13 +14,17 @@ typedef struct {
   AbutExpression    value; /* NULL: zero traction */
 } AbutCondition;
 
+typedef struct _n_AbutElement *AbutElement;
+
 struct _p_AbutBody {
   PETSCHEADER(int);
   AbutMesh      mesh;
   PetscReal     young, poisson, lambda, mu;
   AbutCondition condition[ABUT_MAX_SIDES][2];
+  PetscBool     meandilatation; /* in each cell: against locking */
 
   /* of the present mesh */
+  AbutElement   element;     /* what all cells share */
   PetscInt      generation;  /* of the mesh for which the rest was made, -1 if it is to be made anew */
   Mat           A;           /* stiffness, rows and columns of prescribed unknowns replaced by mu on the diagonal */
   Mat           P;           /* what is preconditioned or factored: A, or if modes are free A on springs that resist them */
@@ -32,10 +37,10 @@ struct _p_AbutBody {
   PetscInt      nmodes;      /* rigid motions that no prescribed displacement resists */
   Vec           mode[ABUT_MAX_MODES];
   MatNullSpace  free;           /* the modes, NULL if there are none */
-  PetscReal    *vertexu;        /* [2*nvertices] displacement at all local vertices, hanging ones too */
+  PetscReal    *nodeu;          /* [2*nnodes] displacement at all local nodes, hanging ones too */
   AbutBoundary *boundary;       /* skeleton: contours, nodes, sides; no values */
-  PetscInt     *boundaryglobal; /* [n] global vertex numbers of its nodes */
-  VecScatter    toboundary;     /* from a vector of unknowns to [2*n] values on every rank */
+  PetscInt     *boundaryglobal; /* [nnodes] global numbers of its nodes */
+  VecScatter    toboundary;     /* from a vector of unknowns to [2*nnodes] values on every rank */
   Vec           onboundary;
   AbutSide      side[ABUT_MAX_SIDES];
 
@@ -48,9 +53,12 @@ struct _p_AbutBody {
 
 PETSC_INTERN PetscErrorCode AbutBodySetConditionsFromOptions_Private(AbutBody, AbutOptionItems, char[], size_t);
 PETSC_INTERN PetscErrorCode AbutBodyConditionsSetUp_Private(AbutBody);
-PETSC_INTERN PetscErrorCode AbutBodyEdgeMoments_Private(AbutBody, PetscInt, PetscInt, const PetscReal[2], const PetscReal[2], PetscReal[2]);
+PETSC_INTERN PetscErrorCode AbutBodyEdgeMoments_Private(AbutBody, PetscInt, PetscInt, const PetscReal[2], const PetscReal[2], PetscReal[]);
 PETSC_INTERN PetscErrorCode AbutBodyAssemble_Private(AbutBody);
-PETSC_INTERN PetscErrorCode AbutCellStiffness_Private(AbutBody, PetscInt, PetscReal[64]);
+PETSC_INTERN PetscErrorCode AbutElementCreate_Private(AbutMesh, AbutElement *);
+PETSC_INTERN PetscErrorCode AbutElementDestroy_Private(AbutElement *);
+PETSC_INTERN PetscErrorCode AbutCellStiffness_Private(AbutBody, PetscInt, PetscReal[]);
+PETSC_INTERN PetscErrorCode AbutCellDilatation_Private(AbutBody, PetscInt, PetscReal *);
 PETSC_INTERN PetscErrorCode AbutBodyCreateSolver_Private(AbutBody);
 PETSC_INTERN PetscErrorCode AbutBodyChooseSolver_Private(AbutBody, PetscInt, PetscBool);
 PETSC_INTERN PetscErrorCode AbutBodyGiveFactorRoom_Private(AbutBody);

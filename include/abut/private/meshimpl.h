@@ -14,15 +14,29 @@ struct _AbutMeshOps {
 
 #define ABUT_BOX_SIDES 4
 
+/* Lagrange's functions of one order on the reference cell */
+typedef struct {
+  PetscInt  order, corners, nodes;
+  PetscReal xi[2 * ABUT_CELL_NODES_MAX]; /* the nodes */
+  PetscInt  row[ABUT_CELL_NODES_MAX];    /* quads: the point of each node on the first coordinate's line, and ... */
+  PetscInt  column[ABUT_CELL_NODES_MAX]; /* ... on the second one's */
+  PetscReal monomial[10 * 10];           /* triangles: the functions in powers of the coordinates, one a row */
+} AbutBasis;
+
+PETSC_INTERN PetscErrorCode AbutBasisSetUp_Private(PetscInt, PetscInt, AbutBasis *);
+PETSC_INTERN void           AbutBasisEvaluate_Private(const AbutBasis *, const PetscReal[2], PetscReal[], PetscReal[]);
+
 struct _p_AbutMesh {
   PETSCHEADER(struct _AbutMeshOps);
   PetscReal        lower[2], upper[2];
   PetscInt         cells[2];
   AbutShape        shape;
+  PetscInt         order;
   PetscBool        boxset, setupcalled;
   AbutExpression   size; /* wanted length of the cells of the first mesh, NULL: as they are */
   DM               dm;
   PetscInt         generation; /* counts the meshes: 0 is the first */
+  AbutBasis        basis;
   AbutMeshTopology topology;
   void            *data;
 };
@@ -40,5 +54,8 @@ PETSC_INTERN PetscErrorCode AbutMeshCreate_Triangles(AbutMesh);
 PETSC_INTERN PetscErrorCode AbutMeshRefineToSize_Private(AbutMesh);
 PETSC_INTERN PetscErrorCode AbutMeshTopologyBuild_Private(AbutMesh);
 PETSC_INTERN PetscErrorCode AbutMeshTopologyReset_Private(AbutMesh);
+PETSC_INTERN PetscErrorCode AbutMeshEdgesBuild_Private(AbutMesh);
+PETSC_INTERN PetscErrorCode AbutMeshNodesBuild_Private(AbutMesh);
 PETSC_INTERN PetscErrorCode AbutMeshSidesBuild_Private(AbutMesh);
+PETSC_INTERN void           AbutMeshGetEdgeNodes_Private(const AbutMeshTopology *, PetscInt, PetscInt, PetscInt[]);
 PETSC_EXTERN PetscLogEvent  ABUTMESH_Adapt;
