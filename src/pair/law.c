@@ -115,9 +115,10 @@ PetscErrorCode AbutPairComputeForce(AbutPair pair, const PetscReal p[], PetscRea
   for (PetscInt g = 0; g < pair->nsegments; ++g) {
     const AbutSegment *seg = &pair->segment[g];
 
-    for (PetscInt i = 0; i < 2; ++i)
+    for (PetscInt i = 0; i <= pair->order[0]; ++i)
       for (PetscInt side = 0; side < 2; ++side)
-        for (PetscInt j = 0; j < 2; ++j) force[side][seg->element[side] + j] += seg->M[side][i][j] * p[seg->element[0] + i];
+        for (PetscInt j = 0; j <= pair->order[side]; ++j)
+          force[side][pair->order[side] * seg->element[side] + j] += seg->M[side][i][j] * p[pair->order[0] * seg->element[0] + i];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

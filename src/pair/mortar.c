@@ -57,11 +57,14 @@ static PetscErrorCode AbutPairChoosePressureSide_Private(AbutPair pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The dual functions psi_i = sum_j A[i][j] phi_j of one element on its overlap with the other side, biorthogonal there: A = diag(D) M^-1;
-   z[j] holds the hat function phi_j at the two ends of the overlap, of length f. Beside a node that carries no pressure the other node's
-   function is 1, so that constants stay in the space. On a small overlap the dual functions are wild: the largest eigenvalue of D M^-1 is
-   det D/det M, 3 on a full element; beyond 100 the nearer node carries alone. */
-static void AbutPairDual_Private(const PetscReal z[2][2], const PetscBool carries[2], PetscReal A[2][2])
+/* psi_i = sum_j A[i][j] phi_j on an element of the pressure side */
+typedef PetscReal AbutDual[ABUT_SIDE_NODES_MAX][ABUT_SIDE_NODES_MAX];
+
+/* The dual functions of one element of order 1 on its overlap with the other side, biorthogonal there: A = diag(D) M^-1; z[j] holds the hat
+   function phi_j at the two ends of the overlap, of length f. Beside a node that carries no pressure the other node's function is 1, so
+   that constants stay in the space. On a small overlap the dual functions are wild: the largest eigenvalue of D M^-1 is det D/det M, 3 on a
+   full element; beyond 100 the nearer node carries alone. */
+static void AbutPairDualLinear_Private(const PetscReal z[2][2], const PetscBool carries[2], AbutDual A)
 {
   const PetscReal sum[2] = {z[0][0] + z[0][1], z[1][0] + z[1][1]}, f2 = PetscSqr(z[1][1] - z[1][0]); /* D_i = f sum_i/2, det M = f^4/12 */
   const PetscReal cross = 2. * (z[0][0] * z[1][0] + z[0][1] * z[1][1]) + z[0][0] * z[1][1] + z[0][1] * z[1][0];
@@ -78,80 +81,163 @@ static void AbutPairDual_Private(const PetscReal z[2][2], const PetscBool carrie
   }
 }
 
-/* Integrals over one piece [from,to] (along the side) of the elements e of the pressure side and k of the other */
-static PetscErrorCode AbutPairSegment_Private(AbutPair pair, PetscReal *const s[2], const PetscReal tangent[2], PetscInt e, PetscInt k,
-                                              const PetscReal A[2][2], PetscReal from, PetscReal to)
+/* Those of a whole element: D_i are its Gauss-Lobatto weights, all positive, and the functions reproduce pressures of one order less */
+static PetscErrorCode AbutPairDual_Private(PetscInt order, AbutDual A)
 {
-  static const PetscReal z[4] = {-0.86113631159405258, -0.33998104358485626, 0.33998104358485626, 0.86113631159405258};
-  static const PetscReal w[4] = {0.34785484513745386, 0.65214515486254614, 0.65214515486254614, 0.34785484513745386};
-  const AbutSide        *m    = pair->nodes[pair->which];
-  AbutSegment           *g    = &pair->segment[pair->nsegments++];
+  PetscReal x[ABUT_SIDE_NODES_MAX], w[ABUT_SIDE_NODES_MAX], inverse[ABUT_SIDE_NODES_MAX * ABUT_SIDE_NODES_MAX];
 
   PetscFunctionBegin;
+  PetscCall(AbutGetLobattoNodes(order, x, w));
+  PetscCall(AbutGetLobattoMassInverse(order, inverse));
+  for (PetscInt i = 0; i <= order; ++i)
+    for (PetscInt j = 0; j <= order; ++j) A[i][j] = w[i] * inverse[(order + 1) * i + j];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Where the two sides lie, and what is known of the other side's elements while one walks along the pressure side */
+typedef struct {
+  PetscReal *s[2], tangent[2]; /* places of the nodes along the pressure side, which runs against the other one */
+  PetscInt   n[2], k;          /* elements; that of the other side met last */
+} AbutWalk;
+
+/* Integrals over one piece [from,to] of the elements e of the pressure side and k of the other */
+static PetscErrorCode AbutPairSegment_Private(AbutPair pair, const AbutWalk *walk, PetscInt e, PetscInt k, AbutDual A, PetscReal from,
+                                              PetscReal to)
+{
+  const PetscInt   n = pair->order[0] + pair->order[1] + 2, first = pair->order[0] * e, node[2] = {first, pair->order[1] * k};
+  const PetscReal *x0 = pair->nodes[pair->which]->x;
+  PetscReal        z[2 * ABUT_ORDER_MAX + 2], w[2 * ABUT_ORDER_MAX + 2], phi[2][ABUT_SIDE_NODES_MAX];
+  AbutSegment     *g;
+
+  PetscFunctionBegin;
+  if (pair->nsegments == pair->room) {
+    pair->room = 2 * pair->room + 16;
+    PetscCall(PetscRealloc(pair->room * sizeof(*pair->segment), &pair->segment));
+  }
+  g = &pair->segment[pair->nsegments++];
   PetscCall(PetscMemzero(g, sizeof(*g)));
   g->element[0] = e;
   g->element[1] = k;
-  for (PetscInt q = 0; q < 4; ++q) {
-    const PetscReal at = 0.5 * (from + to) + 0.5 * z[q] * (to - from), dw = 0.5 * w[q] * (to - from),
-                    x[2] = {m->x[0] + at * tangent[0], m->x[1] + at * tangent[1]};
-    const PetscReal own = (at - s[0][e]) / (s[0][e + 1] - s[0][e]), other = (at - s[1][k]) / (s[1][k + 1] - s[1][k]),
-                    phi[2][2] = {
-                      {1. - own,   own  },
-                      {1. - other, other}
-    };
-    PetscReal f;
+  PetscCall(PetscDTGaussQuadrature(n, from, to, z, w));
+  for (PetscInt q = 0; q < n; ++q) {
+    const PetscReal x[2] = {x0[0] + z[q] * walk->tangent[0], x0[1] + z[q] * walk->tangent[1]};
+    PetscReal       f;
 
+    for (PetscInt side = 0; side < 2; ++side) {
+      const PetscReal a = walk->s[side][node[side]], b = walk->s[side][node[side] + pair->order[side]];
+
+      PetscCall(AbutEvaluateLobatto(pair->order[side], (2. * z[q] - a - b) / (b - a), phi[side], NULL));
+    }
     PetscCall(AbutPairGetGap(pair, x, &f));
-    for (PetscInt i = 0; i < 2; ++i) {
-      const PetscReal psi = dw * (A[i][0] * phi[0][0] + A[i][1] * phi[0][1]);
+    for (PetscInt i = 0; i <= pair->order[0]; ++i) {
+      PetscReal psi = 0.;
 
-      pair->D[e + i] += psi;
-      pair->F[e + i] += psi * f;
+      for (PetscInt j = 0; j <= pair->order[0]; ++j) psi += w[q] * A[i][j] * phi[0][j];
+      pair->D[first + i] += psi;
+      pair->F[first + i] += psi * f;
       for (PetscInt side = 0; side < 2; ++side)
-        for (PetscInt j = 0; j < 2; ++j) g->M[side][i][j] += psi * phi[side][j];
+        for (PetscInt j = 0; j <= pair->order[side]; ++j) g->M[side][i][j] += psi * phi[side][j];
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The sides run against each other, so elements of the other one are met from its end */
+/* The pieces of [from,to], in element e of the pressure side. Elements of the other side are met from its end: element j covers
+   [s[1][p j + p], s[1][p j]], p its order. */
+static PetscErrorCode AbutPairPieces_Private(AbutPair pair, AbutWalk *walk, PetscInt e, AbutDual A, PetscReal from, PetscReal to)
+{
+  const PetscReal *own = walk->s[0] + pair->order[0] * e, *s = walk->s[1], tiny = 1e-12 * (own[pair->order[0]] - own[0]);
+  const PetscInt   p = pair->order[1];
+
+  PetscFunctionBegin;
+  while (walk->k > 0 && s[p * walk->k] <= from + tiny) --walk->k;
+  for (PetscInt j = walk->k; j >= 0 && s[p * (j + 1)] < to; --j) {
+    const PetscReal a = PetscMax(from, s[p * (j + 1)]), b = PetscMin(to, s[p * j]);
+
+    if (b - a > tiny) PetscCall(AbutPairSegment_Private(pair, walk, e, j, A, a, b));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* An element of higher order that the other side covers in part, or with nodes that carry no pressure: dual functions need not be
+   positive there, so each of the nodes on the overlap that carry takes what is nearest to it, a constant; if none does, the nearest. */
+static PetscErrorCode AbutPairNearest_Private(AbutPair pair, AbutWalk *walk, PetscInt e, PetscReal from, PetscReal to)
+{
+  const PetscInt   p     = pair->order[0];
+  const PetscReal *s     = walk->s[0] + p * e;
+  const PetscBool *fixed = pair->nodes[pair->which]->fixed + p * e;
+  PetscInt         node[ABUT_SIDE_NODES_MAX], n = 0, nearest = -1;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i <= p; ++i) {
+    if (fixed[i]) continue;
+    if (s[i] >= from && s[i] <= to) node[n++] = i;
+    if (nearest < 0 || PetscAbsReal(s[i] - 0.5 * (from + to)) < PetscAbsReal(s[nearest] - 0.5 * (from + to))) nearest = i;
+  }
+  if (!n && nearest >= 0) node[n++] = nearest;
+  for (PetscInt i = 0; i < n; ++i) {
+    AbutDual A = {{0.}};
+
+    for (PetscInt j = 0; j <= p; ++j) A[node[i]][j] = 1.;
+    PetscCall(AbutPairPieces_Private(pair, walk, e, A, i ? 0.5 * (s[node[i - 1]] + s[node[i]]) : from,
+                                     i + 1 < n ? 0.5 * (s[node[i]] + s[node[i + 1]]) : to));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Element e of the pressure side, of which [from,to] lies against the other one */
+static PetscErrorCode AbutPairElement_Private(AbutPair pair, AbutWalk *walk, PetscInt e, PetscReal from, PetscReal to)
+{
+  const PetscInt   p     = pair->order[0];
+  const PetscReal *s     = walk->s[0] + p * e, h = s[p] - s[0];
+  const PetscBool *fixed = pair->nodes[pair->which]->fixed + p * e;
+  PetscBool        whole = (PetscBool)(to - from > h * (1. - 1e-9));
+  AbutDual         A     = {{0.}};
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i <= p; ++i)
+    if (fixed[i]) whole = PETSC_FALSE;
+  if (p == 1) {
+    const PetscReal hats[2][2] = {
+      {(s[1] - from) / h, (s[1] - to) / h},
+      {(from - s[0]) / h, (to - s[0]) / h}
+    };
+    const PetscBool carries[2] = {(PetscBool)!fixed[0], (PetscBool)!fixed[1]};
+
+    AbutPairDualLinear_Private(hats, carries, A);
+  } else if (whole) PetscCall(AbutPairDual_Private(p, A));
+  else {
+    PetscCall(AbutPairNearest_Private(pair, walk, e, from, to));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(AbutPairPieces_Private(pair, walk, e, A, from, to));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode AbutPairMortar_Private(AbutPair pair)
 {
-  PetscReal      *s[2], tangent[2], low, high;
-  const AbutSide *m, *o;
-  PetscInt        k;
+  const AbutSide *side[2];
+  AbutWalk        walk;
 
   PetscFunctionBegin;
   PetscCall(AbutPairChoosePressureSide_Private(pair));
-  m = pair->nodes[pair->which];
-  o = pair->nodes[!pair->which];
-  PetscCall(AbutPairProject_Private(pair, s, tangent));
-  PetscCall(PetscMalloc1(m->n + o->n, &pair->segment));
-  PetscCall(PetscCalloc3(m->n, &pair->D, m->n, &pair->F, m->n, &pair->work));
-  low              = s[1][o->n - 1];
-  high             = s[1][0];
-  k                = o->n - 2;
-  pair->overlap[0] = PetscMax(low, 0.);
-  pair->overlap[1] = PetscMin(high, s[0][m->n - 1]);
-  for (PetscInt e = 0; e + 1 < m->n; ++e) {
-    const PetscReal h = s[0][e + 1] - s[0][e], from = PetscMax(s[0][e], low), to = PetscMin(s[0][e + 1], high);
-    const PetscReal hats[2][2] = {
-      {(s[0][e + 1] - from) / h, (s[0][e + 1] - to) / h},
-      {(from - s[0][e]) / h,     (to - s[0][e]) / h    }
-    };
-    const PetscBool carries[2] = {(PetscBool)!m->fixed[e], (PetscBool)!m->fixed[e + 1]};
-    PetscReal       A[2][2];
-
-    if (to - from < 1e-9 * h) continue;
-    AbutPairDual_Private(hats, carries, A);
-    while (k > 0 && s[1][k] <= from + 1e-12 * h) --k;
-    for (PetscInt j = k; j >= 0 && s[1][j + 1] < to; --j) { /* element j of the other side covers [s[1][j+1], s[1][j]] */
-      const PetscReal a = PetscMax(from, s[1][j + 1]), b = PetscMin(to, s[1][j]);
-
-      if (b - a > 1e-12 * h) PetscCall(AbutPairSegment_Private(pair, s, tangent, e, j, A, a, b));
-    }
+  for (PetscInt k = 0; k < 2; ++k) {
+    side[k]        = pair->nodes[k ? !pair->which : pair->which];
+    pair->order[k] = side[k]->order;
+    walk.n[k]      = (side[k]->n - 1) / side[k]->order;
   }
-  for (PetscInt i = 0; i < 2; ++i) PetscCall(PetscFree(s[i]));
+  walk.k = walk.n[1] - 1;
+  PetscCall(AbutPairProject_Private(pair, walk.s, walk.tangent));
+  PetscCall(PetscCalloc3(side[0]->n, &pair->D, side[0]->n, &pair->F, side[0]->n, &pair->work));
+  pair->overlap[0] = PetscMax(walk.s[1][side[1]->n - 1], 0.);
+  pair->overlap[1] = PetscMin(walk.s[1][0], walk.s[0][side[0]->n - 1]);
+  for (PetscInt e = 0; e < walk.n[0]; ++e) {
+    const PetscReal *s = walk.s[0] + pair->order[0] * e, *end = s + pair->order[0], from = PetscMax(*s, pair->overlap[0]),
+                     to = PetscMin(*end, pair->overlap[1]);
+
+    if (to - from >= 1e-9 * (*end - *s)) PetscCall(AbutPairElement_Private(pair, &walk, e, from, to));
+  }
+  for (PetscInt i = 0; i < 2; ++i) PetscCall(PetscFree(walk.s[i]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -160,7 +246,7 @@ PetscErrorCode AbutPairMortarReset_Private(AbutPair pair)
   PetscFunctionBegin;
   PetscCall(PetscFree(pair->segment));
   PetscCall(PetscFree3(pair->D, pair->F, pair->work));
-  pair->nsegments = 0;
+  pair->nsegments = pair->room = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -191,9 +277,10 @@ PetscErrorCode AbutPairComputePenetration(AbutPair pair, const PetscReal u1[], c
   for (PetscInt k = 0; k < pair->nsegments; ++k) {
     const AbutSegment *seg = &pair->segment[k];
 
-    for (PetscInt i = 0; i < 2; ++i)
+    for (PetscInt i = 0; i <= pair->order[0]; ++i)
       for (PetscInt side = 0; side < 2; ++side)
-        for (PetscInt j = 0; j < 2; ++j) g[seg->element[0] + i] += seg->M[side][i][j] * trace[side][seg->element[side] + j];
+        for (PetscInt j = 0; j <= pair->order[side]; ++j)
+          g[pair->order[0] * seg->element[0] + i] += seg->M[side][i][j] * trace[side][pair->order[side] * seg->element[side] + j];
   }
   for (PetscInt i = 0; i < n; ++i) g[i] = pair->D[i] > 0. ? g[i] / pair->D[i] : 0.;
   PetscFunctionReturn(PETSC_SUCCESS);

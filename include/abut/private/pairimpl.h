@@ -10,11 +10,10 @@ typedef enum {
 } AbutPressureSide;
 
 /* A piece of the common refinement: one element of each side, and M[s][i][k] = integral of psi_i phi_k, psi_i the dual function of node
-   i of the pressure side's element, phi_k the hat function of node k of the element of side s: s = 0 the pressure side, s = 1 the other
-   one */
+   i of the pressure side's element, phi_k the function of node k of the element of side s: s = 0 the pressure side, s = 1 the other one */
 typedef struct {
   PetscInt  element[2];
-  PetscReal M[2][2][2];
+  PetscReal M[2][ABUT_SIDE_NODES_MAX][ABUT_SIDE_NODES_MAX];
 } AbutSegment;
 
 struct _p_AbutPair {
@@ -30,7 +29,8 @@ struct _p_AbutPair {
   PetscInt        generation[2];
   PetscInt        which; /* the side that carries the pressures */
   PetscInt        n[2];  /* nodes of both sides */
-  PetscInt        nsegments;
+  PetscInt        order[2]; /* of the displacements of the pressure side, and of the other one */
+  PetscInt        nsegments, room;
   AbutSegment    *segment;
   PetscReal       overlap[2]; /* the part of the pressure side that the other one faces: distances from its first node */
   PetscReal      *D, *F;      /* [n[which]] integrals of psi_i and of psi_i times the gap; D = 0: the node carries no pressure */
