@@ -19,11 +19,11 @@ typedef struct _p_AbutPair *AbutPair;
 /* The state of a pair for given traces; the same on all ranks. Forces per unit thickness (stress times length), lengths in the scene's
    unit */
 typedef struct {
-  PetscReal force; /* integral of p */
-  PetscReal pressure_max, pressure_min;
-  PetscReal contact_length;  /* sum of the nodal lengths D_i over active nodes */
-  PetscReal contact_edge;    /* from the closed end of the shared part, else half the contact's width: see AbutPairGetState() */
-  PetscReal penetration_max; /* of the averaged nodal penetration */
+  PetscReal force;                      /* integral of p */
+  PetscReal pressure_max, pressure_min; /* of the nodal values; of AbutPairRecoverPressure() from order 2 */
+  PetscReal contact_length;             /* sum of the nodal lengths D_i over active nodes */
+  PetscReal contact_edge;               /* from the closed end of the shared part, else half the contact's width: see AbutPairGetEdges() */
+  PetscReal penetration_max;            /* of the averaged nodal penetration */
   PetscReal complementarity; /* largest p_i*|p_i*theta - penetration_i| over p_max times what two layers and theta give under p_max */
   PetscReal balance;         /* |sum of forces on both sides| / force */
   PetscReal energy;          /* J_theta, eq. (15) */
@@ -54,4 +54,5 @@ PETSC_EXTERN PetscErrorCode AbutPairComputeSupport(AbutPair, PetscReal[], PetscR
 PETSC_EXTERN PetscErrorCode AbutPairComputeWinkler(AbutPair, PetscReal[], PetscReal[], PetscBool *);
 PETSC_EXTERN PetscErrorCode AbutPairGetGap(AbutPair, const PetscReal[2], PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutPairGetPressureNodes(AbutPair, PetscInt *, PetscInt *, const PetscReal *[], const PetscReal *[]);
+PETSC_EXTERN PetscErrorCode AbutPairRecoverPressure(AbutPair, const PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutPairGetState(AbutPair, const PetscReal[], const PetscReal[], const PetscReal[], AbutPairState *);

@@ -188,8 +188,8 @@ static PetscErrorCode AbutPairNearest_Private(AbutPair pair, AbutWalk *walk, Pet
 /* Element e of the pressure side, of which [from,to] lies against the other one */
 static PetscErrorCode AbutPairElement_Private(AbutPair pair, AbutWalk *walk, PetscInt e, PetscReal from, PetscReal to)
 {
-  const PetscInt   p     = pair->order[0];
-  const PetscReal *s     = walk->s[0] + p * e, h = s[p] - s[0];
+  const PetscInt   p = pair->order[0];
+  const PetscReal *s = walk->s[0] + p * e, h = s[p] - s[0];
   const PetscBool *fixed = pair->nodes[pair->which]->fixed + p * e;
   PetscBool        whole = (PetscBool)(to - from > h * (1. - 1e-9));
   AbutDual         A     = {{0.}};
@@ -233,7 +233,7 @@ PetscErrorCode AbutPairMortar_Private(AbutPair pair)
   pair->overlap[1] = PetscMin(walk.s[1][0], walk.s[0][side[0]->n - 1]);
   for (PetscInt e = 0; e < walk.n[0]; ++e) {
     const PetscReal *s = walk.s[0] + pair->order[0] * e, *end = s + pair->order[0], from = PetscMax(*s, pair->overlap[0]),
-                     to = PetscMin(*end, pair->overlap[1]);
+                    to = PetscMin(*end, pair->overlap[1]);
 
     if (to - from >= 1e-9 * (*end - *s)) PetscCall(AbutPairElement_Private(pair, &walk, e, from, to));
   }

@@ -57,6 +57,26 @@ static PetscReal AbutPairEdge_Private(AbutPair pair, const PetscReal g[], const 
   return (edge[0] <= pair->overlap[0] || edge[1] >= pair->overlap[1] ? 1. : 0.5) * (edge[1] - edge[0]);
 }
 
+static PetscErrorCode AbutPairReadPressures_Private(AbutPair pair, const PetscReal p[], AbutPairState *state)
+{
+  const PetscInt   n    = pair->n[pair->which];
+  const PetscReal *read = p;
+  PetscReal       *consistent;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(n, &consistent));
+  if (pair->order[0] > 1) {
+    PetscCall(AbutPairRecoverPressure(pair, p, consistent));
+    read = consistent;
+  }
+  for (PetscInt i = 0; i < n; ++i) {
+    state->pressure_max = PetscMax(state->pressure_max, read[i]);
+    state->pressure_min = PetscMin(state->pressure_min, p[i]);
+  }
+  PetscCall(PetscFree(consistent));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@C
    AbutPairGetState - Forces, contact zone and the residuals of the contact conditions (7)-(10) of the paper
 
@@ -75,7 +95,7 @@ static PetscReal AbutPairEdge_Private(AbutPair pair, const PetscReal g[], const 
 
    Note:
    The contact edge is where the penetration changes sign (theta > 0); in exact contact, where the straight line through gap^(2/3) at the
-   second to fourth open node meets zero.
+   second to fourth open node meets zero. The largest pressure is that of `AbutPairRecoverPressure()` on sides of order 2 and higher.
 
 .seealso: `AbutPairComputePressure()`, `AbutInterfaceGetPairState()`
 @*/
@@ -92,8 +112,6 @@ PetscErrorCode AbutPairGetState(AbutPair pair, const PetscReal u1[], const Petsc
     ++state->nodes;
     state->force += p[i] * pair->D[i];
     state->energy += 0.5 * pair->theta * p[i] * p[i] * pair->D[i];
-    state->pressure_max    = PetscMax(state->pressure_max, p[i]);
-    state->pressure_min    = PetscMin(state->pressure_min, p[i]);
     state->penetration_max = PetscMax(state->penetration_max, g[i]);
     state->complementarity = PetscMax(state->complementarity, p[i] * PetscAbsReal(p[i] * pair->theta - g[i]));
     if (p[i] > 0.) {
@@ -101,6 +119,7 @@ PetscErrorCode AbutPairGetState(AbutPair pair, const PetscReal u1[], const Petsc
       state->contact_length += pair->D[i];
     }
   }
+  PetscCall(AbutPairReadPressures_Private(pair, p, state));
   PetscCall(AbutPairGetCompliance(pair, compliance));
   if (state->pressure_max > 0.) state->complementarity /= (compliance[0] + compliance[1] + pair->theta) * PetscSqr(state->pressure_max);
   state->contact_edge = AbutPairEdge_Private(pair, g, p);

@@ -16,6 +16,7 @@ typedef struct {
   PetscReal low[2], high[2]; /* ends of these sides */
   PetscInt  cells[2];        /* along them */
   AbutShape shape[2];
+  PetscInt  order[2];  /* 0 is 1 */
   PetscInt  levels[2]; /* refinements of the cells at the first half of the side */
   PetscBool held[2];   /* the displacement normal to the contact is prescribed on the free end of the body too */
 } Patch;
@@ -33,6 +34,8 @@ static const Patch patches[] = {
   {.low = {0., 0.37}, .high = {3., 2.21}, .cells = {7, 5}},
   {.low = {0., -0.4}, .high = {3., 1.6}, .cells = {7, 50}, .shape = {ABUT_QUAD, ABUT_TRIANGLE}},
   {.low = {-0.1, 0.}, .high = {1.7, 2.}, .cells = {9, 6}, .along = 1},
+  {.low = {0., 0.37}, .high = {3., 2.21}, .cells = {7, 5}, .order = {2, 3}},
+  {.low = {-0.1, 0.}, .high = {1.7, 2.}, .cells = {5, 4}, .order = {4, 2}, .shape = {ABUT_QUAD, ABUT_TRIANGLE}, .along = 1},
   /* by little: within one element, by a thousandth of one, by almost nothing */
   {.low = {0., 0.7}, .high = {3., 0.9}, .cells = {2, 3}},
   {.low = {0., 2.999}, .high = {3., 4.}, .cells = {3, 4}},
@@ -40,10 +43,16 @@ static const Patch patches[] = {
   /* a node that carries no pressure */
   {.high = {1., 1.}, .cells = {3, 4}, .held = {PETSC_TRUE, PETSC_TRUE}},
   {.high = {1., 1.}, .cells = {4, 4}, .held = {PETSC_TRUE, PETSC_FALSE}},
-  {.high = {1., 1.}, .cells = {4, 3}, .held = {PETSC_FALSE, PETSC_TRUE}, .levels = {0, 1}}
+  {.high = {1., 1.}, .cells = {4, 3}, .held = {PETSC_FALSE, PETSC_TRUE}, .levels = {0, 1}},
+  {.high = {1., 1.}, .cells = {4, 3}, .held = {PETSC_FALSE, PETSC_TRUE}, .levels = {0, 1}, .order = {3, 2}},
+  /* whole sides of higher order */
+  {.high = {1., 1.}, .cells = {3, 3}, .order = {2, 2}},
+  {.high = {1., 1.}, .cells = {4, 3}, .order = {3, 3}, .shape = {ABUT_QUAD, ABUT_TRIANGLE}, .along = 1},
+  {.high = {1., 1.}, .cells = {3, 2}, .order = {4, 1}, .levels = {1, 0}},
+  {.high = {1., 1.}, .cells = {2, 3}, .order = {2, 4}, .shape = {ABUT_TRIANGLE, ABUT_QUAD}, .levels = {1, 2}}
 };
 /* clang-format on */
-static const int npatches = PETSC_STATIC_ARRAY_LENGTH(patches), first_unequal = 7, first_alone = 10, end_unequal = 13;
+static const int npatches = PETSC_STATIC_ARRAY_LENGTH(patches), first_unequal = 7, first_alone = 10, end_unequal = 15, end_alone = 19;
 
 /* The bits of a variant: pressures on the second side of the pair; the punch is its first body; the free ends are those of small x or y */
 static PetscBool Bit(PetscInt variant, PetscInt bit)
@@ -89,21 +98,38 @@ static void Evenly(const CkField *field, const PetscReal x[2], PetscReal u[2], P
   s[2]      = 0.;
 }
 
-/* The same pressure where the other body does not reach: on the element with its end, the linear function of the same nodal forces */
+/* Integrals of the functions of an element [0,1] over a part of it */
+static void Moments(PetscInt order, PetscReal from, PetscReal to, PetscReal m[])
+{
+  PetscReal z[3], w[3], N[ABUT_SIDE_NODES_MAX];
+
+  CkOk(PetscDTGaussQuadrature(3, from, to, z, w));
+  for (PetscInt i = 0; i <= order; ++i) m[i] = 0.;
+  for (PetscInt q = 0; from < to && q < 3; ++q) {
+    CkOk(AbutEvaluateLobatto(order, 2. * z[q] - 1., N, NULL));
+    for (PetscInt i = 0; i <= order; ++i) m[i] += w[q] * N[i];
+  }
+}
+
+/* The same pressure where the other body does not reach: on the element with its end, the polynomial of the same nodal forces */
 static PetscErrorCode PressureBeside(const PetscReal x[2], PetscReal *value, void *ctx)
 {
   const Box      *box = (const Box *)ctx;
-  const PetscInt  b = box->b, along = box->patch->along;
+  const PetscInt  b = box->b, along = box->patch->along, order = PetscMax(1, box->patch->order[b]), n = order + 1;
   const PetscReal low = box->patch->low[b], h = (box->patch->high[b] - low) / box->patch->cells[b];
   const PetscReal at = (x[along] - low) / h, left = PetscFloorReal(at), z = at - left;
-  PetscReal       from, to, l, r, m[2];
+  PetscReal       from, to, l, r, m[2][ABUT_SIDE_NODES_MAX], N[ABUT_SIDE_NODES_MAX], inverse[ABUT_SIDE_NODES_MAX * ABUT_SIDE_NODES_MAX];
 
   Overlap(box->patch, &from, &to);
-  l      = PetscMin(PetscMax((from - low) / h - left, 0.), 1.); /* the part [l,r] of the element is in contact */
-  r      = PetscMax(PetscMin((to - low) / h - left, 1.), l);
-  m[1]   = 0.5 - 0.5 * (r * r - l * l);
-  m[0]   = 1. - (r - l) - m[1];
-  *value = (b ? 1. : -1.) * Pressure() * ((4. * m[0] - 2. * m[1]) * (1. - z) + (4. * m[1] - 2. * m[0]) * z);
+  l = PetscMin(PetscMax((from - low) / h - left, 0.), 1.); /* the part [l,r] of the element is in contact */
+  r = PetscMax(PetscMin((to - low) / h - left, 1.), l);
+  Moments(order, 0., l, m[0]);
+  Moments(order, r, 1., m[1]);
+  CkOk(AbutGetLobattoMassInverse(order, inverse));
+  CkOk(AbutEvaluateLobatto(order, 2. * z - 1., N, NULL));
+  *value = 0.;
+  for (PetscInt i = 0; i < n; ++i)
+    for (PetscInt j = 0; j < n; ++j) *value += 2. * (b ? 1. : -1.) * Pressure() * N[i] * inverse[n * i + j] * (m[0][j] + m[1][j]);
   return PETSC_SUCCESS;
 }
 
@@ -130,10 +156,11 @@ static AbutScene Create(const Patch *patch, PetscInt variant, const char more[])
     for (PetscInt k = 0; k < 4 && patch->along; k += 2)
       corner[k] = low + (k ? height[b] : 0.), corner[k + 1] = k ? patch->high[b] : patch->low[b];
     CkOk(PetscSNPrintf(part, sizeof(part),
-                       " -%s_mesh_box %.15g,%.15g,%.15g,%.15g -%s_mesh_cells %d,%d -%s_mesh_shape %s -%s_material_young %g "
-                       "-%s_material_poisson %g",
+                       " -%s_mesh_box %.15g,%.15g,%.15g,%.15g -%s_mesh_cells %d,%d -%s_mesh_shape %s -%s_mesh_order %d "
+                       "-%s_material_young %g -%s_material_poisson %g",
                        name[b], corner[0], corner[1], corner[2], corner[3], name[b], (int)cells[patch->along], (int)cells[!patch->along],
-                       name[b], patch->shape[b] == ABUT_QUAD ? "quad" : "triangle", name[b], young[b], name[b], poisson[b]));
+                       name[b], patch->shape[b] == ABUT_QUAD ? "quad" : "triangle", name[b], (int)PetscMax(1, patch->order[b]), name[b],
+                       young[b], name[b], poisson[b]));
     CkOk(PetscStrlcat(text, part, sizeof(text)));
   }
   CkOptions(text);
@@ -285,21 +312,17 @@ START_TEST(sides_of_unequal_length_are_in_balance)
 }
 END_TEST
 
-static PetscReal HatMoment(PetscReal a, PetscReal b, PetscReal from, PetscReal to)
+/* The integrals of the functions of a side's nodes over the common part; a side runs up or down */
+static void Tributaries(const AbutSide *s, PetscInt along, PetscReal from, PetscReal to, PetscReal length[])
 {
-  const PetscReal l = PetscMax(PetscMin(a, b), from), r = PetscMin(PetscMax(a, b), to);
+  for (PetscInt i = 0; i < s->n; ++i) length[i] = 0.;
+  for (PetscInt first = 0; first + 1 < s->n; first += s->order) {
+    const PetscReal a = s->x[2 * first + along], b = s->x[2 * (first + s->order) + along], l = (from - a) / (b - a), r = (to - a) / (b - a);
+    PetscReal       m[ABUT_SIDE_NODES_MAX];
 
-  return r > l ? PetscAbsReal(((r - b) + (l - b)) * (r - l) / (2. * (a - b))) : 0.;
-}
-
-/* The integral of the hat function of a node over the common part; its element towards node k spans from 1 at the node to 0 at k */
-static PetscReal Tributary(const AbutSide *s, PetscInt i, PetscInt along, PetscReal from, PetscReal to)
-{
-  PetscReal length = 0.;
-
-  for (PetscInt k = i - 1; k <= i + 1; k += 2)
-    if (k >= 0 && k < s->n) length += HatMoment(s->x[2 * i + along], s->x[2 * k + along], from, to);
-  return length;
+    Moments(s->order, PetscMax(0., PetscMin(l, r)), PetscMin(1., PetscMax(l, r)), m);
+    for (PetscInt i = 0; i <= s->order; ++i) length[first + i] += m[i] * PetscAbsReal(b - a);
+  }
 }
 
 static void PairOf(AbutScene scene, AbutPair *pair, const AbutSide *sides[2])
@@ -321,28 +344,30 @@ START_TEST(a_pressure_of_one_gives_every_node_its_tributary_length)
   Box             box[2];
   AbutBody        body[2];
   const AbutSide *s[2];
-  PetscReal      *p, *f[2], from, to, length = Overlap(patch, &from, &to);
+  PetscReal      *p, *f[2], *expected, from, to, length = Overlap(patch, &from, &to);
   AbutPair        pair;
 
   Prepare(scene, patch, variant, PETSC_FALSE, box, body);
   PairOf(scene, &pair, s);
-  CkOk(PetscMalloc3(s[0]->n + s[1]->n, &p, s[0]->n, &f[0], s[1]->n, &f[1]));
+  CkOk(PetscMalloc4(s[0]->n + s[1]->n, &p, s[0]->n, &f[0], s[1]->n, &f[1], s[0]->n + s[1]->n, &expected));
   for (PetscInt i = 0; i < s[0]->n + s[1]->n; ++i) p[i] = 1.;
   CkOk(AbutPairComputeForce(pair, p, f[0], f[1]));
-  for (PetscInt k = 0; k < 2; ++k)
-    for (PetscInt i = 0; i < s[k]->n; ++i) ck_assert_double_eq_tol(f[k][i], Tributary(s[k], i, patch->along, from, to), 1e-12 * length);
-  CkOk(PetscFree3(p, f[0], f[1]));
+  for (PetscInt k = 0; k < 2; ++k) {
+    Tributaries(s[k], patch->along, from, to, expected);
+    for (PetscInt i = 0; i < s[k]->n; ++i) ck_assert_double_eq_tol(f[k][i], expected[i], 1e-12 * length);
+  }
+  CkOk(PetscFree4(p, f[0], f[1], expected));
   Destroy(&scene);
 }
 END_TEST
 
 /* u_n = c0 + c1 t on both sides, f = 0.002 + 0.01 t. Nodal penetrations are the values at the nodes, wherever the elements are cut,
-   unless a node carries the pressure of an element alone; in any case their mean is right. */
+   unless a node carries the pressure of a place alone; in any case their mean is right. */
 START_TEST(a_linear_penetration_is_found_at_every_node)
 {
   const Patch     *patch   = &patches[_i / nvariants];
   const PetscInt   variant = _i % nvariants;
-  const PetscBool  alone   = (PetscBool)(_i / nvariants >= first_alone);
+  const PetscBool  alone   = (PetscBool)(_i / nvariants >= first_alone && _i / nvariants < end_alone);
   AbutScene        scene   = Create(patch, variant,
                            patch->along ? "-mid_pair_theta 4 -mid_pair_gap 0.002+0.01*y" : "-mid_pair_theta 4 -mid_pair_gap 0.002+0.01*x");
   Box              box[2];
@@ -374,6 +399,33 @@ START_TEST(a_linear_penetration_is_found_at_every_node)
 }
 END_TEST
 
+/* On whole sides of order 2 and more the dual functions reproduce linear pressures, and constant ones anywhere */
+START_TEST(the_recovered_pressure_is_that_of_the_nodal_forces)
+{
+  const Patch     *patch = &patches[_i / nvariants];
+  const PetscBool  whole = (PetscBool)(_i / nvariants >= end_alone);
+  AbutScene        scene = Create(patch, _i % nvariants, "-mid_pair_gap 0");
+  Box              box[2];
+  AbutBody         body[2];
+  const AbutSide  *s[2];
+  const PetscReal *x, *D;
+  PetscReal       *p, *q;
+  AbutPair         pair;
+  PetscInt         which, n;
+
+  Prepare(scene, patch, _i % nvariants, PETSC_FALSE, box, body);
+  PairOf(scene, &pair, s);
+  CkOk(AbutPairGetPressureNodes(pair, &which, &n, &x, &D));
+  CkOk(PetscMalloc2(n, &p, n, &q));
+  for (PetscInt i = 0; i < n; ++i) p[i] = whole && s[which]->order > 1 ? 3. + x[2 * i + patch->along] : 3.;
+  CkOk(AbutPairRecoverPressure(pair, p, q));
+  for (PetscInt i = 0; i < n; ++i)
+    if (D[i] > 0.) ck_assert_double_eq_tol(q[i], p[i], 1e-9);
+  CkOk(PetscFree2(p, q));
+  Destroy(&scene);
+}
+END_TEST
+
 int main(int argc, char **argv)
 {
   Suite *suite = suite_create("patch");
@@ -388,6 +440,8 @@ int main(int argc, char **argv)
   tcase_add_loop_test(tests, sides_of_unequal_length_are_in_balance, 0, (end_unequal - first_unequal) * nvariants);
   tcase_add_loop_test(tests, a_pressure_of_one_gives_every_node_its_tributary_length, 0, npatches * nvariants);
   tcase_add_loop_test(tests, a_linear_penetration_is_found_at_every_node, 0, npatches * nvariants);
+  tcase_add_loop_test(tests, the_recovered_pressure_is_that_of_the_nodal_forces, 0, first_alone * nvariants);
+  tcase_add_loop_test(tests, the_recovered_pressure_is_that_of_the_nodal_forces, end_unequal * nvariants, npatches * nvariants);
   suite_add_tcase(suite, tests);
   status = CkRun(suite);
   PetscCall(AbutFinalize());

@@ -27,8 +27,8 @@ struct _p_AbutPair {
 
   /* of the present meshes */
   PetscInt        generation[2];
-  PetscInt        which; /* the side that carries the pressures */
-  PetscInt        n[2];  /* nodes of both sides */
+  PetscInt        which;    /* the side that carries the pressures */
+  PetscInt        n[2];     /* nodes of both sides */
   PetscInt        order[2]; /* of the displacements of the pressure side, and of the other one */
   PetscInt        nsegments, room;
   AbutSegment    *segment;
