@@ -117,7 +117,7 @@ static PetscErrorCode AbutEstimatorListNames_Private(char names[], size_t len)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode AbutEstimatorFindType_Private(AbutEstimator est, AbutEstimatorType type, PetscErrorCode (**create)(AbutEstimator))
+static PetscErrorCode AbutEstimatorFindOne_Private(AbutEstimator est, AbutEstimatorType type, PetscErrorCode (**create)(AbutEstimator))
 {
   MPI_Comm  comm = PetscObjectComm((PetscObject)est);
   PetscBool found;
@@ -140,6 +140,23 @@ static PetscErrorCode AbutEstimatorFindType_Private(AbutEstimator est, AbutEstim
           type, names);
 }
 
+/* Several names separated by commas are all looked up before any estimator is made */
+static PetscErrorCode AbutEstimatorFindType_Private(AbutEstimator est, AbutEstimatorType type, PetscErrorCode (**create)(AbutEstimator))
+{
+  char     name[ABUT_COMBINED_MAX][ABUT_COMBINED_NAME];
+  PetscInt n;
+
+  PetscFunctionBegin;
+  if (!strchr(type, ',')) {
+    PetscCall(AbutEstimatorFindOne_Private(est, type, create));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(AbutEstimatorSplitType_Private(PetscObjectComm((PetscObject)est), type, &n, name));
+  for (PetscInt i = 0; i < n; ++i) PetscCall(AbutEstimatorFindOne_Private(est, name[i], create));
+  *create = AbutEstimatorCreate_Combined;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@C
    AbutEstimatorSetType - Chooses how the error is estimated
 
@@ -147,16 +164,19 @@ static PetscErrorCode AbutEstimatorFindType_Private(AbutEstimator est, AbutEstim
 
    Input Parameters:
 +  est  - the estimator
--  type - a name, such as `ABUTESTIMATORFEMBEM` or `ABUTESTIMATORZZ`
+-  type - a name, such as `ABUTESTIMATORFEMBEM` or `ABUTESTIMATORZZ`, or several separated by commas, such as "fembem,zz"
 
    Options Database Keys:
-+  -estimator_type type - the name
++  -estimator_type type - the name or names
 -  -plugin_path folder  - where `libestimator_NAME.so` is looked for
 
    Level: beginner
 
-   Note:
+   Notes:
    A type that is not yet registered is looked for as the plugin `libestimator_NAME.so`; only the plugin of the chosen type is opened.
+
+   Of several types every one estimates, with its own options, and the indicator of a cell is the largest of theirs, or the root of the sum
+   of their squares: see `AbutEstimatorSetFromOptions()`. Their unknowns add up.
 
 .seealso: `AbutEstimatorSetFromOptions()`, `AbutEstimatorGetType()`, `AbutEstimatorRegister()`
 @*/
@@ -213,8 +233,10 @@ PetscErrorCode AbutEstimatorGetType(AbutEstimator est, AbutEstimatorType *type)
 .  est - the estimator
 
    Options Database Keys:
-+  -estimator_type <fembem> - the type
--  -plugin_path folder      - where `libestimator_NAME.so` is, if not with `libabut.so`
++  -estimator_type <fembem>    - the type, or several separated by commas
+.  -estimator_combine <max,sum> - with several types: `max` (default), in every cell the largest of their indicators eta_i counts; `sum`:
+                                 sqrt( sum eta_i^2 )
+-  -plugin_path folder         - where `libestimator_NAME.so` is, if not with `libabut.so`
 
    Level: beginner
 
@@ -228,7 +250,8 @@ PetscErrorCode AbutEstimatorSetFromOptions(AbutEstimator est)
   PetscValidHeaderSpecific(est, ABUTESTIMATOR_CLASSID, 1);
   if (((PetscObject)est)->type_name) PetscCall(PetscStrncpy(type, ((PetscObject)est)->type_name, sizeof(type)));
   PetscObjectOptionsBegin((PetscObject)est);
-  PetscCall(AbutOptionsString(PetscOptionsObject, "-estimator_type", "how the error is estimated: the name of a plugin", type, sizeof(type),
+  PetscCall(AbutOptionsString(PetscOptionsObject, "-estimator_type",
+                              "how the error is estimated: the name of a plugin, or several separated by commas", type, sizeof(type),
                               NULL));
   PetscCall(AbutOptionsString(PetscOptionsObject, "-plugin_path", "where libestimator_NAME.so is, if not with libabut.so", folder,
                               sizeof(folder), NULL));

@@ -8,3 +8,9 @@ struct _p_AbutEstimator {
   PetscInt unknowns; /* solved for by the last estimate, beside those of the body */
   void    *data;     /* of the type */
 };
+
+/* "fembem, zz": the names in a type of several; what makes an estimator of them */
+#define ABUT_COMBINED_MAX  8
+#define ABUT_COMBINED_NAME 64
+PETSC_INTERN PetscErrorCode AbutEstimatorSplitType_Private(MPI_Comm, const char[], PetscInt *, char[][ABUT_COMBINED_NAME]);
+PETSC_INTERN PetscErrorCode AbutEstimatorCreate_Combined(AbutEstimator);
