@@ -11,9 +11,10 @@
 S*/
 typedef struct _p_AbutEstimator *AbutEstimator;
 typedef const char              *AbutEstimatorType;
-#define ABUTESTIMATORFEMBEM  "fembem" /* FEM against boundary-element stress, eq. (27) of the paper */
-#define ABUTESTIMATORZZ      "zz"     /* recovered against raw stress, Zienkiewicz and Zhu (1992) */
-#define ABUTESTIMATORDEFAULT ABUTESTIMATORFEMBEM
+#define ABUTESTIMATORFEMBEM   "fembem"   /* FEM against boundary-element stress, eq. (27) of the paper */
+#define ABUTESTIMATORZZ       "zz"       /* recovered against raw stress, Zienkiewicz and Zhu (1992) */
+#define ABUTESTIMATORRESIDUAL "residual" /* what is left of equilibrium in the cells, across their sides and on the boundary */
+#define ABUTESTIMATORDEFAULT  ABUTESTIMATORFEMBEM
 
 /* What a plugin fills in and hands to AbutEstimatorSetOps() in its create routine */
 typedef struct {
@@ -44,6 +45,9 @@ PETSC_EXTERN PetscErrorCode AbutEstimatorDestroy(AbutEstimator *);
 typedef PetscErrorCode (*AbutStressFunction)(AbutEstimator, AbutBody, PetscInt c, PetscInt n, const PetscReal xi[], const PetscReal x[],
                                              PetscReal s[]);
 PETSC_EXTERN PetscErrorCode AbutEstimatorCompareStress(AbutEstimator, AbutBody, AbutStressFunction, PetscReal[]);
+
+/* For what estimates the error of the stress without a better one: from ||s - s_F||_e^2 of each local cell to eta_e, eq. (27) */
+PETSC_EXTERN PetscErrorCode AbutEstimatorScale(AbutBody, PetscReal, PetscReal[]);
 
 /* For what gathers from cells to vertices: sums over the ranks at the vertices with unknowns, v[bs*nunknown] as in AbutMeshTopology */
 PETSC_EXTERN PetscErrorCode AbutEstimatorSumAtVertices(AbutBody, PetscInt, PetscReal[]);

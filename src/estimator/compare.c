@@ -120,25 +120,23 @@ static PetscReal AbutStressSquare_Private(const PetscReal s[3])
   return s[0] * s[0] + s[1] * s[1] + 2. * s[2] * s[2];
 }
 
-/* Integrals over cell c: its area, |s_rec|^2 and |s_rec - s_F|^2 */
+/* Adds the integrals of |s_rec|^2 and |s_rec - s_F|^2 over cell c */
 static PetscErrorCode AbutEstimatorIntegrateCell_Private(AbutEstimator est, AbutBody body, AbutStressFunction stress, PetscInt c,
-                                                         const AbutRule *rule, PetscReal integral[3])
+                                                         const AbutRule *rule, PetscReal integral[2])
 {
   PetscReal x[2 * ABUT_POINTS_MAX], jac[ABUT_POINTS_MAX], rec[3 * ABUT_POINTS_MAX];
 
   PetscFunctionBegin;
   for (PetscInt q = 0; q < rule->n; ++q) PetscCall(AbutBodyGetCellPoint(body, c, &rule->xi[2 * q], &x[2 * q], &jac[q]));
   PetscCall((*stress)(est, body, c, rule->n, rule->xi, x, rec));
-  PetscCall(PetscArrayzero(integral, 3));
   for (PetscInt q = 0; q < rule->n; ++q) {
     const PetscReal w = rule->w[q] * jac[q];
     PetscReal       fe[3];
 
     PetscCall(AbutBodyGetCellStress(body, c, &rule->xi[2 * q], fe));
     for (PetscInt i = 0; i < 3; ++i) fe[i] -= rec[3 * q + i];
-    integral[0] += w;
-    integral[1] += w * AbutStressSquare_Private(&rec[3 * q]);
-    integral[2] += w * AbutStressSquare_Private(fe);
+    integral[0] += w * AbutStressSquare_Private(&rec[3 * q]);
+    integral[1] += w * AbutStressSquare_Private(fe);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -158,6 +156,48 @@ static PetscErrorCode AbutEstimatorGetFloor_Private(AbutBody body, const AbutMes
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+   AbutEstimatorScale - From squared errors of the stress in the cells to the indicators of eq. (27) of the paper
+
+   Collective
+
+   Input Parameters:
++  body   - the body, solved
+-  square - ||s||^2, the integral of the square of the stress over the cells of this rank; the stress is the best there is
+
+   Input/Output Parameter:
+.  eta - [cells on this rank] in: ||s - s_F||_e^2, or an estimate of it, stress^2 times area; out: eta_e, where
+   eta_e^2 = ( ||s - s_F||_e^2 / |e| ) / ( ||s||_Omega^2 / |Omega| )
+
+   Level: advanced
+
+   Notes:
+   The norm is that of the plane tensor, s11^2 + s22^2 + 2 s12^2.
+
+   A body without stress, at rest or moved as a rigid one, has eta = 0.
+
+.seealso: `AbutEstimatorRegister()`, `AbutEstimatorCompareStress()`, `AbutEstimatorGetNorms()`
+@*/
+PetscErrorCode AbutEstimatorScale(AbutBody body, PetscReal square, PetscReal eta[])
+{
+  AbutMesh                mesh;
+  const AbutMeshTopology *t;
+  PetscReal               sum[2] = {0., square}, area, floor = 0.; /* |Omega| and ||s||^2 */
+
+  PetscFunctionBegin;
+  PetscCall(AbutBodyGetMesh(body, &mesh));
+  PetscCall(AbutMeshGetTopology(mesh, &t));
+  for (PetscInt c = 0; c < t->ncells; ++c) {
+    PetscCall(AbutMeshGetCellArea(mesh, c, &area));
+    sum[0] += area;
+    eta[c] /= area;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  PetscCall(AbutEstimatorGetFloor_Private(body, t, sum[0], &floor));
+  for (PetscInt c = 0; c < t->ncells; ++c) eta[c] = sum[1] / sum[0] > floor ? PetscSqrtReal(eta[c] * sum[0] / sum[1]) : 0.;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@C
    AbutEstimatorCompareStress - The indicator of eq. (27) of the paper: the finite-element stress against one thought better
 
@@ -174,12 +214,10 @@ static PetscErrorCode AbutEstimatorGetFloor_Private(AbutBody body, const AbutMes
    Level: advanced
 
    Notes:
-   The norm is that of the plane tensor, s11^2 + s22^2 + 2 s12^2. Quads take 2x2 Gauss points, and 3x3 where they touch the boundary of the
-   body; triangles take 3 points, and 6 there.
+   Norms and what is said of a body without stress are those of `AbutEstimatorScale()`. Quads take 2x2 Gauss points, and 3x3 where they touch
+   the boundary of the body; triangles take 3 points, and 6 there.
 
-   A body without stress, at rest or moved as a rigid one, has eta = 0.
-
-.seealso: `AbutEstimatorRegister()`, `AbutEstimatorGetNorms()`, `AbutBodyGetCellStress()`
+.seealso: `AbutEstimatorRegister()`, `AbutEstimatorScale()`, `AbutEstimatorGetNorms()`, `AbutBodyGetCellStress()`
 @*/
 PetscErrorCode AbutEstimatorCompareStress(AbutEstimator est, AbutBody body, AbutStressFunction stress, PetscReal eta[])
 {
@@ -187,7 +225,7 @@ PetscErrorCode AbutEstimatorCompareStress(AbutEstimator est, AbutBody body, Abut
   const AbutMeshTopology *t;
   AbutRule                rule[2];
   PetscBool              *touches;
-  PetscReal               sum[2] = {0., 0.}, floor = 0.; /* |Omega| and ||s||^2 */
+  PetscReal               square = 0.;
 
   PetscFunctionBegin;
   PetscCall(AbutBodyGetMesh(body, &mesh));
@@ -197,17 +235,14 @@ PetscErrorCode AbutEstimatorCompareStress(AbutEstimator est, AbutBody body, Abut
   PetscCall(PetscMalloc1(t->ncells, &touches));
   PetscCall(AbutEstimatorGetBoundaryCells_Private(body, t, touches));
   for (PetscInt c = 0; c < t->ncells; ++c) {
-    PetscReal integral[3];
+    PetscReal integral[2] = {0., 0.};
 
     PetscCall(AbutEstimatorIntegrateCell_Private(est, body, stress, c, &rule[touches[c]], integral));
-    sum[0] += integral[0];
-    sum[1] += integral[1];
-    eta[c] = integral[2] / integral[0];
+    square += integral[0];
+    eta[c] = integral[1];
   }
   PetscCall(PetscFree(touches));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
-  PetscCall(AbutEstimatorGetFloor_Private(body, t, sum[0], &floor));
-  for (PetscInt c = 0; c < t->ncells; ++c) eta[c] = sum[1] / sum[0] > floor ? PetscSqrtReal(eta[c] * sum[0] / sum[1]) : 0.;
+  PetscCall(AbutEstimatorScale(body, square, eta));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
