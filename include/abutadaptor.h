@@ -3,7 +3,7 @@
 #include <abutestimator.h>
 
 /*S
-   AbutAdaptor - From one number per cell to marks, and to a new mesh: threshold (27) or equal errors, caps on level and unknowns
+   AbutAdaptor - From one number per cell to marks, and to a new mesh: threshold (27), equal errors or bulk, caps on level and unknowns
 
    Level: intermediate
 
@@ -13,6 +13,7 @@ typedef struct _p_AbutAdaptor *AbutAdaptor;
 typedef const char            *AbutAdaptorType;
 #define ABUTADAPTORTHRESHOLD "threshold" /* cells whose indicator is above delta, eq. (27) of the paper */
 #define ABUTADAPTOREQUAL     "equal"     /* cells with more than their share of the error, until the total is small enough */
+#define ABUTADAPTORDOERFLER  "doerfler"  /* the fewest cells that hold a part of the error, until the total is small enough */
 
 typedef enum {
   ABUT_ADAPT_DONE,    /* no cell is above the threshold, or above its share */
@@ -29,6 +30,7 @@ PETSC_EXTERN PetscErrorCode AbutAdaptorSetTarget(AbutAdaptor, PetscReal);
 PETSC_EXTERN PetscErrorCode AbutAdaptorGetTarget(AbutAdaptor, PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutAdaptorGetAllowances(AbutAdaptor, PetscInt, AbutBody[], Vec[], const PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutAdaptorSetAllowance(AbutAdaptor, PetscReal);
+PETSC_EXTERN PetscErrorCode AbutAdaptorGetLevels(AbutAdaptor, PetscInt *, PetscInt *);
 PETSC_EXTERN PetscErrorCode AbutAdaptorGetBodies(AbutAdaptor, PetscInt *, const char *const *[]);
 PETSC_EXTERN PetscErrorCode AbutAdaptorMark(AbutAdaptor, AbutBody, Vec, PetscBool[], PetscInt *, AbutAdaptVerdict *);
 PETSC_EXTERN PetscErrorCode AbutAdaptorView(AbutAdaptor, PetscViewer);

@@ -56,3 +56,5 @@ PETSC_EXTERN PetscErrorCode AbutPairGetGap(AbutPair, const PetscReal[2], PetscRe
 PETSC_EXTERN PetscErrorCode AbutPairGetPressureNodes(AbutPair, PetscInt *, PetscInt *, const PetscReal *[], const PetscReal *[]);
 PETSC_EXTERN PetscErrorCode AbutPairRecoverPressure(AbutPair, const PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutPairGetState(AbutPair, const PetscReal[], const PetscReal[], const PetscReal[], AbutPairState *);
+PETSC_EXTERN PetscErrorCode AbutPairGetEdges(AbutPair, const PetscReal[], const PetscReal[], const PetscReal[], PetscInt, PetscInt *,
+                                             PetscReal[][2]);

@@ -25,6 +25,7 @@ static PetscErrorCode AbutAdaptorInitializePackage(void)
   PetscCall(PetscRegisterFinalize(AbutAdaptorFinalizePackage));
   PetscCall(AbutAdaptorRegister(ABUTADAPTORTHRESHOLD, AbutAdaptorCreate_Threshold));
   PetscCall(AbutAdaptorRegister(ABUTADAPTOREQUAL, AbutAdaptorCreate_Equal));
+  PetscCall(AbutAdaptorRegister(ABUTADAPTORDOERFLER, AbutAdaptorCreate_Doerfler));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -61,6 +62,9 @@ PetscErrorCode AbutAdaptorCreate(MPI_Comm comm, AbutAdaptor *adaptor)
                               AbutAdaptorView));
   (*adaptor)->max_level    = 8;
   (*adaptor)->max_unknowns = 1000000;
+  (*adaptor)->jump         = 1;
+  (*adaptor)->target       = 0.05;
+  (*adaptor)->allowance    = PETSC_MAX_REAL;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -107,7 +111,7 @@ PetscErrorCode AbutAdaptorDestroy(AbutAdaptor *adaptor)
 
    Input Parameters:
 +  adaptor - the adaptor
--  type    - `ABUTADAPTORTHRESHOLD` or `ABUTADAPTOREQUAL`; the present type is left as it is
+-  type    - `ABUTADAPTORTHRESHOLD`, `ABUTADAPTOREQUAL` or `ABUTADAPTORDOERFLER`; the present type is left as it is
 
    Level: intermediate
 
@@ -174,14 +178,20 @@ static PetscErrorCode AbutAdaptorSetBodies_Private(AbutAdaptor adaptor, char lis
 .  adaptor - the adaptor
 
    Options Database Keys:
-+  -adaptor_type <threshold,equal> - how cells are chosen
++  -adaptor_type <threshold,equal,doerfler> - how cells are chosen
 .  -adaptor_threshold <0.1>        - threshold: delta of eq. (27) of the paper, refine cells whose indicator is above
-.  -adaptor_target <0.05>          - equal: end when the error of all bodies together is estimated to be at most this, relative
+.  -adaptor_target <0.05>          - equal and doerfler: end when the error of all bodies together is estimated to be at most this, relative
+.  -adaptor_bulk <0.5>             - doerfler: the refined cells hold this part of the square of the error of all bodies together
+.  -adaptor_jump <1>               - a marked cell at the edge of a contact goes up this many levels at once
 .  -adaptor_bodies list            - names of the bodies to adapt, separated by commas; all if it is not given
 .  -adaptor_max_level <8>          - cells of this level are not refined any more; the first mesh has level 0
 -  -adaptor_max_unknowns <1000000> - of one body: no refinement that would pass it
 
    Level: intermediate
+
+   Notes:
+   The fewest unknowns come from `-adaptor_type doerfler -adaptor_bulk 0.5`, the fewest meshes from `-adaptor_bulk 0.7 -adaptor_jump 2`;
+   in a scene file `adaptor: {type: doerfler, target: 0.02, bulk: 0.7, jump: 2}`.
 
 .seealso: `AbutAdaptorMark()`, `AbutAdaptorGetBodies()`
 @*/
@@ -196,7 +206,7 @@ PetscErrorCode AbutAdaptorSetFromOptions(AbutAdaptor adaptor)
   PetscValidHeaderSpecific(adaptor, ABUTADAPTOR_CLASSID, 1);
   if (((PetscObject)adaptor)->type_name) PetscCall(PetscStrncpy(type, ((PetscObject)adaptor)->type_name, sizeof(type)));
   PetscObjectOptionsBegin((PetscObject)adaptor);
-  PetscCall(AbutOptionsString(PetscOptionsObject, "-adaptor_type", "how cells are chosen for refinement: threshold, equal", type,
+  PetscCall(AbutOptionsString(PetscOptionsObject, "-adaptor_type", "how cells are chosen for refinement: threshold, equal, doerfler", type,
                               sizeof(type), NULL));
   PetscCall(AbutAdaptorSetType(adaptor, type));
   PetscCall(AbutOptionsString(PetscOptionsObject, "-adaptor_bodies", "names of the bodies to adapt, all if not given", list, sizeof(list),
@@ -211,6 +221,11 @@ PetscErrorCode AbutAdaptorSetFromOptions(AbutAdaptor adaptor)
   AbutCheckInput(adaptor->max_unknowns > 0, comm,
                  "adaptor_max_unknowns: %" PetscInt_FMT " is not above 0; give a number that fits the memory, for example 1000000",
                  adaptor->max_unknowns);
+  PetscCall(AbutOptionsInt(PetscOptionsObject, "-adaptor_jump", "levels that a marked cell at the edge of a contact goes up at once",
+                           &adaptor->jump, NULL));
+  AbutCheckInput(adaptor->jump > 0 && adaptor->jump <= ABUT_LEVEL_MAX, comm,
+                 "adaptor_jump: %" PetscInt_FMT " is no number of levels; give a number from 1 to %d, for example 2", adaptor->jump,
+                 ABUT_LEVEL_MAX);
   PetscTryTypeMethod(adaptor, setfromoptions, PetscOptionsObject);
   PetscOptionsEnd();
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -238,6 +253,31 @@ PetscErrorCode AbutAdaptorGetBodies(AbutAdaptor adaptor, PetscInt *n, const char
   PetscValidHeaderSpecific(adaptor, ABUTADAPTOR_CLASSID, 1);
   *n    = adaptor->nbodies;
   *name = (const char *const *)adaptor->body;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutAdaptorGetLevels - How far cells at the edge of a contact go up at once, and how far cells may go at all
+
+   Not Collective
+
+   Input Parameter:
+.  adaptor - the adaptor
+
+   Output Parameters:
++  jump      - levels that a marked cell at the edge of a contact goes up
+-  max_level - the last level
+
+   Level: developer
+
+.seealso: `AbutAdaptorSetFromOptions()`
+@*/
+PetscErrorCode AbutAdaptorGetLevels(AbutAdaptor adaptor, PetscInt *jump, PetscInt *max_level)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(adaptor, ABUTADAPTOR_CLASSID, 1);
+  *jump      = adaptor->jump;
+  *max_level = adaptor->max_level;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,59 +1,19 @@
 #include <abut/private/pairimpl.h> /*I "abutpair.h" I*/
 
-/* Distance of a node from the first one along the (straight) side */
-static PetscReal AbutPairPlace_Private(const AbutSide *m, PetscInt i)
-{
-  return PetscSqrtReal(PetscSqr(m->x[2 * i] - m->x[0]) + PetscSqr(m->x[2 * i + 1] - m->x[1]));
-}
-
-/* The edge beyond the last closed node, from the second to fourth open node on: there gap^(2/3) runs straight into the edge of an exact
-   contact. At most an element away from the last closed node, which is itself the answer where there is no such line. */
-static PetscReal AbutPairEdgeOfGap_Private(AbutPair pair, const PetscReal g[], PetscInt in, PetscInt step)
-{
-  const AbutSide *m    = pair->nodes[pair->which];
-  const PetscReal last = AbutPairPlace_Private(m, in), h = PetscAbsReal(AbutPairPlace_Private(m, in + step) - last);
-  PetscReal       s[3], y[3], ms = 0., my = 0., sy = 0., ss = 0., edge;
-
-  for (PetscInt k = 0; k < 3; ++k) {
-    const PetscInt node = in + (k + 2) * step;
-
-    if (node < 0 || node >= m->n || pair->D[node] <= 0. || g[node] >= 0.) return last;
-    s[k] = AbutPairPlace_Private(m, node);
-    y[k] = PetscPowReal(-g[node], 2. / 3.);
-    ms += s[k] / 3.;
-    my += y[k] / 3.;
-  }
-  for (PetscInt k = 0; k < 3; ++k) {
-    sy += (s[k] - ms) * (y[k] - my);
-    ss += (s[k] - ms) * (s[k] - ms);
-  }
-  edge = sy != 0. ? ms - my * ss / sy : last;
-  return PetscMin(PetscMax(edge, last - h), last + h);
-}
-
-/* Where the penetration changes sign, or in exact contact where the gap opens. In contact at an end of the part that both sides share (a
-   symmetric half model): distance from that end; else half the distance of the two edges. Beyond the last node that may carry a pressure
-   the contact reaches the end of the shared part. */
+/* In contact at an end of the part that both sides share (a symmetric half model): distance from that end; else half the distance of the
+   two outermost edges */
 static PetscReal AbutPairEdge_Private(AbutPair pair, const PetscReal g[], const PetscReal p[])
 {
-  const AbutSide *m     = pair->nodes[pair->which];
-  PetscInt        first = -1, last = -1;
-  PetscReal       edge[2];
+  PetscInt  first = -1, last = -1;
+  PetscReal edge[2] = {pair->overlap[0], pair->overlap[1]};
 
-  for (PetscInt i = 0; i < m->n; ++i) {
+  for (PetscInt i = 0; i < pair->n[pair->which]; ++i) {
     if (p[i] <= 0.) continue;
     if (first < 0) first = i;
     last = i;
   }
   if (first < 0) return 0.;
-  for (PetscInt k = 0; k < 2; ++k) {
-    const PetscInt in = k ? last : first, out = k ? last + 1 : first - 1;
-
-    edge[k] = pair->overlap[k];
-    if (out < 0 || out >= m->n || pair->D[out] <= 0.) continue;
-    edge[k] = pair->theta > 0. ? AbutPairPlace_Private(m, in) : AbutPairEdgeOfGap_Private(pair, g, in, out - in);
-    if (pair->theta > 0. && g[in] > 0. && g[out] < 0.) edge[k] += (AbutPairPlace_Private(m, out) - edge[k]) * g[in] / (g[in] - g[out]);
-  }
+  for (PetscInt k = 0; k < 2; ++k) (void)AbutPairEdgeBeyond_Private(pair, g, p, k ? last : first, k ? 1 : -1, &edge[k]);
   return (edge[0] <= pair->overlap[0] || edge[1] >= pair->overlap[1] ? 1. : 0.5) * (edge[1] - edge[0]);
 }
 
@@ -94,10 +54,9 @@ static PetscErrorCode AbutPairReadPressures_Private(AbutPair pair, const PetscRe
    Level: intermediate
 
    Note:
-   The contact edge is where the penetration changes sign (theta > 0); in exact contact, where the straight line through gap^(2/3) at the
-   second to fourth open node meets zero. The largest pressure is that of `AbutPairRecoverPressure()` on sides of order 2 and higher.
+   For the contact edge see `AbutPairGetEdges()`. The largest pressure is that of `AbutPairRecoverPressure()` on sides of order 2 and higher.
 
-.seealso: `AbutPairComputePressure()`, `AbutInterfaceGetPairState()`
+.seealso: `AbutPairComputePressure()`, `AbutPairGetEdges()`, `AbutInterfaceGetPairState()`
 @*/
 PetscErrorCode AbutPairGetState(AbutPair pair, const PetscReal u1[], const PetscReal u2[], const PetscReal p[], AbutPairState *state)
 {

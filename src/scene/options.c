@@ -146,10 +146,10 @@ static PetscErrorCode AbutSceneCyclesFromOptions_Private(AbutScene scene)
 
    Note:
    `-scene_tol` makes an estimator and an adaptor if the scene has none, estimates and adapts all bodies, and ends when the estimate of all
-   together is at most three quarters of T: equal errors in all cells (`ABUTADAPTOREQUAL`), whatever `-adaptor_type`, `-adaptor_threshold`
-   and `-adaptor_bodies` say; the caps hold. ddactive then works with exact contact; other loops get a penalty whose part is about T/8, and
-   the automatic relaxation. Tolerances of the loop and of iterative linear solvers follow from T, except where `-snes_rtol` or
-   `-NAME_ksp_rtol` are given. A line says what was chosen.
+   together is at most three quarters of T: equal errors in all cells (`ABUTADAPTOREQUAL`), or `-adaptor_type doerfler`, whatever
+   `-adaptor_threshold`, `-adaptor_target` and `-adaptor_bodies` say; the caps hold. ddactive then works with exact contact; other loops get
+   a penalty whose part is about T/8, and the automatic relaxation. Tolerances of the loop and of iterative linear solvers follow from T,
+   except where `-snes_rtol` or `-NAME_ksp_rtol` are given. A line says what was chosen.
 
 .seealso: `AbutSceneSetUp()`, `AbutSceneSolve()`
 @*/

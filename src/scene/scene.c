@@ -234,6 +234,7 @@ PetscErrorCode AbutSceneDestroy(AbutScene *scene)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(VecDestroy(&s->x));
+  PetscCall(PetscFree(s->edge));
   PetscCall(SNESDestroy(&s->snes));
   PetscCall(AbutInterfaceDestroy(&s->iface));
   PetscCall(AbutEstimatorDestroy(&s->estimator));

@@ -114,6 +114,7 @@ static PetscErrorCode AbutSceneMark_Private(AbutScene scene, const PetscReal nor
 static PetscErrorCode AbutSceneAdapt_Private(AbutScene scene, PetscBool *const marks[])
 {
   PetscFunctionBegin;
+  PetscCall(AbutSceneKeepEdges_Private(scene));
   if (scene->snes) {
     if (!scene->cold) PetscCall(AbutInterfaceKeepTrace(scene->iface, scene->x));
     PetscCall(VecDestroy(&scene->x));
@@ -122,11 +123,8 @@ static PetscErrorCode AbutSceneAdapt_Private(AbutScene scene, PetscBool *const m
     PetscCall(AbutSceneSolverFromOptions_Private(scene));
   }
   for (PetscInt b = 0; b < scene->nbodies; ++b) {
-    AbutMesh mesh;
-
     if (!marks[b]) continue;
-    PetscCall(AbutBodyGetMesh(scene->body[b], &mesh));
-    PetscCall(AbutMeshAdapt(mesh, marks[b]));
+    PetscCall(AbutSceneAdaptBody_Private(scene, scene->body[b], marks[b]));
     PetscCall(VecDestroy(&scene->eta[b]));
   }
   PetscCall(AbutInterfaceReset(scene->iface));

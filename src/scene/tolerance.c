@@ -52,12 +52,15 @@ static PetscErrorCode AbutSceneChoosePenalty_Private(AbutScene scene)
 /* Everything that does not depend on the meshes; the loop's tolerance was set when the SNES was made, under the user's */
 PetscErrorCode AbutSceneSetTolerance_Private(AbutScene scene)
 {
+  PetscReal target;
+
   PetscFunctionBegin;
   if (scene->tol <= 0.) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(AbutSceneCheckTolerance_Private(scene));
   PetscCall(AbutSceneChoosePenalty_Private(scene));
   PetscCall(AbutAdaptorClearBodies_Private(scene->adaptor));
-  PetscCall(AbutAdaptorSetType(scene->adaptor, ABUTADAPTOREQUAL));
+  PetscCall(AbutAdaptorGetTarget(scene->adaptor, &target));
+  if (target <= 0.) PetscCall(AbutAdaptorSetType(scene->adaptor, ABUTADAPTOREQUAL));
   PetscCall(AbutAdaptorSetTarget(scene->adaptor, ABUT_TOL_ESTIMATE * scene->tol));
   for (PetscInt b = 0; b < scene->nbodies; ++b) scene->estimates[b] = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);

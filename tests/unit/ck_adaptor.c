@@ -151,7 +151,7 @@ START_TEST(wrong_values_are_refused_in_one_line)
   Refused("-adaptor_threshold", "-0.5", "adaptor_threshold: -0.5 is not above 0; give the indicator that is small enough, for example 0.1");
   Refused("-adaptor_max_level", "-1", "adaptor_max_level: -1 is not a level; give a number from 0 to 28");
   Refused("-adaptor_max_unknowns", "0", "adaptor_max_unknowns: 0 is not above 0; give a number that fits the memory, for example 1000000");
-  Refused("-adaptor_type", "doerfler", "adaptor_type: no adaptor named \"doerfler\"; there are: threshold, equal");
+  Refused("-adaptor_type", "guess", "adaptor_type: no adaptor named \"guess\"; there are: threshold, equal, doerfler");
   CkOk(PetscOptionsSetValue(NULL, "-adaptor_type", "equal"));
   Refused("-adaptor_target", "1", "adaptor_target: 1. is not a relative error; give a number between 0 and 1, for example 0.05");
   Refused("-adaptor_bodies", "lower,",

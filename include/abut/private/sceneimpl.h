@@ -13,6 +13,13 @@ typedef struct {
   PetscReal x[2];
 } AbutProbe;
 
+/* An end of a contact that is not the end of a side */
+typedef struct {
+  AbutBody  body[2]; /* of the pair */
+  PetscInt  side[2];
+  PetscReal x[2];
+} AbutContactEdge;
+
 /* Where the seconds of a run went */
 typedef enum {
   ABUT_TIME_SETUP,
@@ -52,6 +59,9 @@ struct _p_AbutScene {
   PetscReal      discretisation; /* the same, of the estimated bodies */
   const char    *verdict;
   PetscInt       status;
+
+  PetscInt         nedges; /* of the last meshes that changed */
+  AbutContactEdge *edge;
 };
 
 PETSC_INTERN PetscErrorCode AbutSceneReadNames_Private(AbutScene, AbutOptionItems, const char[], const char[], PetscInt *, char *[]);
@@ -65,6 +75,9 @@ PETSC_INTERN PetscErrorCode AbutSceneRecordTimes_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutScenePrintHeader_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutScenePrintCycle_Private(AbutScene, PetscInt);
 PETSC_INTERN PetscErrorCode AbutScenePrintEnd_Private(AbutScene);
+/* edges.c */
+PETSC_INTERN PetscErrorCode AbutSceneKeepEdges_Private(AbutScene);
+PETSC_INTERN PetscErrorCode AbutSceneAdaptBody_Private(AbutScene, AbutBody, const PetscBool[]);
 /* budget.c */
 PETSC_INTERN PetscErrorCode AbutSceneGetDiscretisation_Private(AbutScene, PetscReal *, PetscReal[]);
 PETSC_INTERN PetscErrorCode AbutSceneRecordBudget_Private(AbutScene);

@@ -1,0 +1,116 @@
+#include <abut/private/sceneimpl.h>
+
+/* The edges of the contacts, where the stress has its singularities, and what the meshes do about them */
+
+#define ABUT_EDGES_MAX 64 /* of a pair; more are not looked after */
+#define ABUT_TOUCH     1e-6
+
+/* Keeps the edges that the last solve found, before the meshes change */
+PetscErrorCode AbutSceneKeepEdges_Private(AbutScene scene)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree(scene->edge));
+  scene->nedges = 0;
+  PetscCall(PetscMalloc1(ABUT_EDGES_MAX * scene->npairs, &scene->edge));
+  for (PetscInt i = 0; i < scene->npairs; ++i) {
+    const PetscReal *u[2], *p;
+    PetscReal        x[ABUT_EDGES_MAX][2];
+    PetscInt         n;
+
+    for (PetscInt s = 0; s < 2; ++s) PetscCall(AbutInterfaceGetTrace(scene->iface, i, s, &u[s]));
+    PetscCall(AbutInterfaceGetPressure(scene->iface, i, &p));
+    PetscCall(AbutPairGetEdges(scene->pair[i], u[0], u[1], p, ABUT_EDGES_MAX, &n, x));
+    for (PetscInt e = 0; e < n; ++e) {
+      AbutContactEdge *edge = &scene->edge[scene->nedges++];
+
+      PetscCall(AbutPairGetBodies(scene->pair[i], edge->body, edge->side));
+      for (PetscInt d = 0; d < 2; ++d) edge->x[d] = x[e][d];
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Which side of an edge's pair belongs to the body, -1 if none */
+static PetscInt AbutSceneEdgeSide_Private(const AbutContactEdge *edge, AbutBody body)
+{
+  return edge->body[0] == body ? edge->side[0] : (edge->body[1] == body ? edge->side[1] : -1);
+}
+
+/* Does an element side on the boundary touch the edge, seen along it? */
+static PetscBool AbutSideEdgeTouches_Private(const AbutMeshTopology *t, PetscInt k, const PetscReal x[2])
+{
+  const PetscReal *a = t->x + 2 * t->sideedge[3 * k], *b = t->x + 2 * t->sideedge[3 * k + 1], d[2] = {b[0] - a[0], b[1] - a[1]};
+  const PetscReal  z = ((x[0] - a[0]) * d[0] + (x[1] - a[1]) * d[1]) / (d[0] * d[0] + d[1] * d[1]);
+
+  return (PetscBool)(z >= -ABUT_TOUCH && z <= 1. + ABUT_TOUCH);
+}
+
+/* The level that the marked cells at each edge are to reach, -1 where none is marked */
+static PetscErrorCode AbutSceneWantedLevels_Private(AbutScene scene, AbutBody body, const PetscBool mark[], PetscInt level[])
+{
+  const AbutMeshTopology *t;
+  AbutMesh                mesh;
+  PetscInt                jump, last;
+
+  PetscFunctionBegin;
+  PetscCall(AbutBodyGetMesh(body, &mesh));
+  PetscCall(AbutMeshGetTopology(mesh, &t));
+  PetscCall(AbutAdaptorGetLevels(scene->adaptor, &jump, &last));
+  for (PetscInt e = 0; e < scene->nedges; ++e) {
+    const PetscInt side = AbutSceneEdgeSide_Private(&scene->edge[e], body);
+
+    level[e] = -1;
+    for (PetscInt k = 0; k < t->nsideedges; ++k)
+      if (t->sideedge[3 * k + 2] == side && mark[t->sidecell[k]] && AbutSideEdgeTouches_Private(t, k, scene->edge[e].x))
+        level[e] = PetscMax(level[e], PetscMin(t->level[t->sidecell[k]] + jump, last));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, level, (PetscMPIInt)scene->nedges, MPIU_INT, MPI_MAX, PetscObjectComm((PetscObject)scene)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Splits the cells at the edges until they have these levels */
+static PetscErrorCode AbutSceneJump_Private(AbutScene scene, AbutBody body, const PetscInt level[])
+{
+  AbutMesh mesh;
+  PetscInt marked = 1;
+
+  PetscFunctionBegin;
+  PetscCall(AbutBodyGetMesh(body, &mesh));
+  while (marked) {
+    const AbutMeshTopology *t;
+    PetscBool              *mark;
+
+    PetscCall(AbutMeshGetTopology(mesh, &t));
+    PetscCall(PetscCalloc1(t->ncells, &mark));
+    marked = 0;
+    for (PetscInt e = 0; e < scene->nedges; ++e)
+      for (PetscInt k = 0; k < t->nsideedges; ++k) {
+        const PetscInt c = t->sidecell[k];
+
+        if (t->level[c] >= level[e] || t->sideedge[3 * k + 2] != AbutSceneEdgeSide_Private(&scene->edge[e], body)) continue;
+        if (!AbutSideEdgeTouches_Private(t, k, scene->edge[e].x)) continue;
+        mark[c] = PETSC_TRUE;
+        ++marked;
+      }
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &marked, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)scene)));
+    if (marked) PetscCall(AbutMeshAdapt(mesh, mark));
+    PetscCall(PetscFree(mark));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A new mesh for one body */
+PetscErrorCode AbutSceneAdaptBody_Private(AbutScene scene, AbutBody body, const PetscBool mark[])
+{
+  AbutMesh  mesh;
+  PetscInt *level;
+
+  PetscFunctionBegin;
+  PetscCall(AbutBodyGetMesh(body, &mesh));
+  PetscCall(PetscMalloc1(scene->nedges, &level));
+  PetscCall(AbutSceneWantedLevels_Private(scene, body, mark, level));
+  PetscCall(AbutMeshAdapt(mesh, mark));
+  PetscCall(AbutSceneJump_Private(scene, body, level));
+  PetscCall(PetscFree(level));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
