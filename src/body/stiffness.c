@@ -54,66 +54,122 @@ static void AbutCellCondense_Private(PetscInt nodes, PetscInt n, const PetscReal
     }
 }
 
-/* Pattern first: MatSetPreallocationCOO() wants all index pairs in the order in which the values will come */
-static PetscErrorCode AbutBodyPattern_Private(AbutBody body, const AbutMeshTopology *t, PetscCount *count)
+/* The nodes with unknowns that each local cell sees: list[start[c]..start[c+1]-1] */
+typedef struct {
+  PetscInt *start, *list;
+} AbutCellLists;
+
+static PetscErrorCode AbutCellListsCreate_Private(const AbutMeshTopology *t, AbutCellLists *cells)
 {
-  PetscInt  *row, *column, node[ABUT_CELL_ANCHORS_MAX];
-  PetscReal  W[ABUT_CELL_NODES_MAX * ABUT_CELL_ANCHORS_MAX];
-  PetscBool  hanging;
-  PetscCount n = 0;
+  PetscInt  node[ABUT_CELL_ANCHORS_MAX], room = t->nodes * t->ncells + 16, n = 0;
+  PetscReal W[ABUT_CELL_NODES_MAX * ABUT_CELL_ANCHORS_MAX];
+  PetscBool hanging;
 
   PetscFunctionBegin;
+  PetscCall(PetscMalloc1(t->ncells + 1, &cells->start));
+  PetscCall(PetscMalloc1(room, &cells->list));
   for (PetscInt c = 0; c < t->ncells; ++c) {
     const PetscInt m = AbutCellAnchors_Private(t, c, node, W, &hanging);
 
-    n += 4 * m * m;
+    if (n + m > room) {
+      room += room / 2 + m;
+      PetscCall(PetscRealloc(room * sizeof(PetscInt), &cells->list));
+    }
+    cells->start[c] = n;
+    for (PetscInt i = 0; i < m; ++i) cells->list[n++] = t->unknown[node[i]];
   }
-  PetscCall(PetscMalloc2(n, &row, n, &column));
-  *count = n;
-  n      = 0;
-  for (PetscInt c = 0; c < t->ncells; ++c) {
-    const PetscInt m = AbutCellAnchors_Private(t, c, node, W, &hanging);
+  cells->start[t->ncells] = n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
-    for (PetscInt a = 0; a < 2 * m; ++a)
-      for (PetscInt b = 0; b < 2 * m; ++b) {
-        row[n]      = 2 * t->global[t->unknown[node[a / 2]]] + a % 2;
-        column[n++] = 2 * t->global[t->unknown[node[b / 2]]] + b % 2;
+/* How many nodes each node meets in the cells of this rank, itself included: owned by this rank, and not */
+static PetscErrorCode AbutCountNeighbours_Private(const AbutMeshTopology *t, const AbutCellLists *cells, PetscReal count[])
+{
+  PetscInt *first, *cell, *seen;
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc3(t->nunknown + 2, &first, cells->start[t->ncells], &cell, t->nunknown, &seen));
+  for (PetscInt i = 0; i < cells->start[t->ncells]; ++i) ++first[cells->list[i] + 2];
+  for (PetscInt k = 0; k < t->nunknown; ++k) first[k + 2] += first[k + 1];
+  for (PetscInt c = 0; c < t->ncells; ++c)
+    for (PetscInt i = cells->start[c]; i < cells->start[c + 1]; ++i) cell[first[cells->list[i] + 1]++] = c;
+  for (PetscInt k = 0; k < t->nunknown; ++k)
+    for (PetscInt j = first[k]; j < first[k + 1]; ++j)
+      for (PetscInt i = cells->start[cell[j]]; i < cells->start[cell[j] + 1]; ++i) {
+        const PetscInt other = cells->list[i];
+
+        if (seen[other] == k + 1) continue;
+        seen[other] = k + 1;
+        count[2 * k + (other >= t->nowned)] += 1.;
       }
+  PetscCall(PetscFree3(first, cell, seen));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Room in the rows of the matrix. What another rank's cells add to a row is counted by that rank, for both kinds of columns: a little too
+   much where ranks meet. */
+static PetscErrorCode AbutBodyPreallocate_Private(AbutBody body, const AbutMeshTopology *t)
+{
+  AbutCellLists cells;
+  Vec           count, local;
+  PetscScalar  *a;
+  PetscInt     *diagonal, *off;
+
+  PetscFunctionBegin;
+  PetscCall(AbutCellListsCreate_Private(t, &cells));
+  PetscCall(VecDuplicate(body->u, &count));
+  PetscCall(VecGhostGetLocalForm(count, &local));
+  PetscCall(VecZeroEntries(local));
+  PetscCall(VecGetArray(local, &a));
+  PetscCall(AbutCountNeighbours_Private(t, &cells, a));
+  for (PetscInt k = t->nowned; k < t->nunknown; ++k) a[2 * k] = a[2 * k + 1] = a[2 * k] + a[2 * k + 1];
+  PetscCall(VecRestoreArray(local, &a));
+  PetscCall(VecGhostRestoreLocalForm(count, &local));
+  PetscCall(VecGhostUpdateBegin(count, ADD_VALUES, SCATTER_REVERSE));
+  PetscCall(VecGhostUpdateEnd(count, ADD_VALUES, SCATTER_REVERSE));
+  PetscCall(PetscMalloc2(t->nowned, &diagonal, t->nowned, &off));
+  PetscCall(VecGetArray(count, &a));
+  for (PetscInt k = 0; k < t->nowned; ++k) {
+    diagonal[k] = PetscMin((PetscInt)a[2 * k], t->nowned);
+    off[k]      = PetscMin((PetscInt)a[2 * k + 1], t->nglobal - t->nowned);
   }
+  PetscCall(VecRestoreArray(count, &a));
+  PetscCall(VecDestroy(&count));
   PetscCall(MatCreate(PetscObjectComm((PetscObject)body), &body->A));
   PetscCall(MatSetSizes(body->A, 2 * t->nowned, 2 * t->nowned, 2 * t->nglobal, 2 * t->nglobal));
   PetscCall(MatSetBlockSize(body->A, 2));
   PetscCall(MatSetType(body->A, MATAIJ));
-  PetscCall(MatSetPreallocationCOO(body->A, n, row, column));
-  PetscCall(PetscFree2(row, column));
+  PetscCall(MatXAIJSetPreallocation(body->A, 2, diagonal, off, NULL, NULL));
+  PetscCall(PetscFree2(diagonal, off));
+  PetscCall(PetscFree(cells.start));
+  PetscCall(PetscFree(cells.list));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode AbutBodyValues_Private(AbutBody body, const AbutMeshTopology *t, PetscCount count)
+static PetscErrorCode AbutBodyValues_Private(AbutBody body, const AbutMeshTopology *t)
 {
   PetscInt       node[ABUT_CELL_ANCHORS_MAX];
-  PetscReal      W[ABUT_CELL_NODES_MAX * ABUT_CELL_ANCHORS_MAX], K[4 * ABUT_CELL_NODES_MAX * ABUT_CELL_NODES_MAX], *value;
+  PetscReal      W[ABUT_CELL_NODES_MAX * ABUT_CELL_ANCHORS_MAX], *K[2];
   PetscBool      hanging;
-  PetscCount     n = 0;
   PetscLogDouble start, end;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(count, &value));
+  PetscCall(PetscMalloc2(4 * t->nodes * t->nodes, &K[0], 4 * ABUT_CELL_ANCHORS_MAX * ABUT_CELL_ANCHORS_MAX, &K[1]));
   PetscCall(PetscTime(&start));
   for (PetscInt c = 0; c < t->ncells; ++c) {
-    const PetscInt m = AbutCellAnchors_Private(t, c, node, W, &hanging);
+    const PetscInt n = AbutCellAnchors_Private(t, c, node, W, &hanging);
 
-    if (hanging) {
-      PetscCall(AbutCellStiffness_Private(body, c, K));
-      AbutCellCondense_Private(t->nodes, m, K, W, value + n);
-    } else PetscCall(AbutCellStiffness_Private(body, c, value + n));
-    n += 4 * m * m;
+    for (PetscInt i = 0; i < n; ++i) node[i] = t->global[t->unknown[node[i]]];
+    PetscCall(AbutCellStiffness_Private(body, c, K[0]));
+    if (hanging) AbutCellCondense_Private(t->nodes, n, K[0], W, K[1]);
+    PetscCall(MatSetValuesBlocked(body->A, n, node, n, node, K[hanging], ADD_VALUES));
   }
-  PetscCall(MatSetValuesCOO(body->A, value, INSERT_VALUES));
+  PetscCall(MatAssemblyBegin(body->A, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(body->A, MAT_FINAL_ASSEMBLY));
   PetscCall(PetscTime(&end));
   body->assemblytime += end - start;
   body->assemblycells += t->ncells;
-  PetscCall(PetscFree(value));
+  PetscCall(PetscFree2(K[0], K[1]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -122,14 +178,13 @@ static PetscErrorCode AbutBodyValues_Private(AbutBody body, const AbutMeshTopolo
 PetscErrorCode AbutBodyAssemble_Private(AbutBody body)
 {
   const AbutMeshTopology *t;
-  PetscCount              count;
   IS                      columns;
 
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(ABUTBODY_Assemble, body, 0, 0, 0));
   PetscCall(AbutMeshGetTopology(body->mesh, &t));
-  PetscCall(AbutBodyPattern_Private(body, t, &count));
-  PetscCall(AbutBodyValues_Private(body, t, count));
+  PetscCall(AbutBodyPreallocate_Private(body, t));
+  PetscCall(AbutBodyValues_Private(body, t));
   PetscCall(ISCreateStride(PetscObjectComm((PetscObject)body), 2 * t->nowned, 2 * t->firstowned, 1, &columns));
   PetscCall(MatCreateSubMatrix(body->A, body->constrained, columns, MAT_INITIAL_MATRIX, &body->Ac));
   PetscCall(ISDestroy(&columns));
