@@ -17,10 +17,12 @@ static PetscErrorCode AbutSceneSetReal_Private(AbutScene scene, const char kind[
 static PetscErrorCode AbutSceneUniformUnknowns_Private(AbutMesh mesh, PetscReal h_min, PetscReal *n)
 {
   PetscReal lower[2], upper[2];
+  PetscInt  p;
 
   PetscFunctionBegin;
   PetscCall(AbutMeshGetBox(mesh, lower, upper));
-  *n = 2. * (PetscFloorReal(0.5 + (upper[0] - lower[0]) / h_min) + 1.) * (PetscFloorReal(0.5 + (upper[1] - lower[1]) / h_min) + 1.);
+  PetscCall(AbutMeshGetOrder(mesh, &p));
+  *n = 2. * (p * PetscFloorReal(0.5 + (upper[0] - lower[0]) / h_min) + 1.) * (p * PetscFloorReal(0.5 + (upper[1] - lower[1]) / h_min) + 1.);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
