@@ -80,6 +80,15 @@ PETSC_EXTERN PetscErrorCode AbutMeshGetSideEnds(AbutMesh, PetscInt, PetscReal[4]
 PETSC_EXTERN PetscErrorCode AbutMeshAdapt(AbutMesh, const PetscBool[]);
 PETSC_EXTERN PetscErrorCode AbutMeshGetGeneration(AbutMesh, PetscInt *);
 
+/* A vertex on a side of the box that is held at a position; positions are the coordinate that runs along the side, length */
+typedef struct {
+  PetscInt  side;
+  PetscReal reference; /* of the vertex, in the mesh without ties */
+  PetscReal wanted;
+} AbutTie;
+PETSC_EXTERN PetscErrorCode AbutMeshSetTies(AbutMesh, PetscInt, const AbutTie[]);
+PETSC_EXTERN PetscErrorCode AbutMeshFindTie(AbutMesh, PetscInt, const PetscReal[2], AbutTie *, PetscBool *);
+
 /* Shape functions N[nodes], their gradients G[2*nodes] (1/length) and the Jacobian determinant of local cell c at a reference point:
    [-1,1]^2 for quads, (0,0)(1,0)(0,1) for triangles. The inverse map says whether the point lies in the cell (or on its border). */
 PETSC_EXTERN PetscErrorCode AbutMeshMapCell(AbutMesh, PetscInt, const PetscReal[2], PetscReal[2], PetscReal[], PetscReal[], PetscReal *);

@@ -222,32 +222,40 @@ PetscErrorCode AbutMeshSetUp(AbutMesh mesh)
 }
 
 /*@
-   AbutMeshAdapt - Splits the marked cells, and those that must follow, and distributes the new mesh
+   AbutMeshAdapt - Splits the marked cells, and those that must follow, distributes the new mesh, and moves it to its ties
 
    Collective
 
    Input Parameters:
 +  mesh  - the mesh
--  marks - [ncells] the local cells to split
+-  marks - [ncells] the local cells to split; on all ranks `NULL` if only the ties have changed
 
    Level: intermediate
 
    Notes:
    Quadrilaterals are split in four and kept 2:1 across sides, which is the paper's extra rule against spurious refinement;
    triangles are split in four by bisections, and their neighbours bisected until the mesh conforms.
-   Every array got from the mesh before is no longer valid.
+   Every array got from the mesh before is no longer valid; without marks, and with the ties as they were, nothing happens.
 
-.seealso: `AbutMeshGetTopology()`, `AbutMeshGetGeneration()`, `AbutAdaptorMark()`
+.seealso: `AbutMeshGetTopology()`, `AbutMeshGetGeneration()`, `AbutMeshSetTies()`, `AbutAdaptorMark()`
 @*/
 PetscErrorCode AbutMeshAdapt(AbutMesh mesh, const PetscBool marks[])
 {
-  DM dm;
+  DM        dm;
+  PetscBool splits;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(mesh, ABUTMESH_CLASSID, 1);
   PetscCheck(mesh->setupcalled, PetscObjectComm((PetscObject)mesh), PETSC_ERR_ORDER, "Call AbutMeshSetUp() first");
+  splits = (PetscBool)(marks != NULL); /* a rank without cells may have no array */
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &splits, 1, MPIU_BOOL, MPI_LOR, PetscObjectComm((PetscObject)mesh)));
+  if (!splits && !mesh->tiesmoved) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscLogEventBegin(ABUTMESH_Adapt, mesh, 0, 0, 0));
-  PetscUseTypeMethod(mesh, refine, marks, &dm);
+  if (splits) PetscUseTypeMethod(mesh, refine, marks, &dm);
+  else {
+    dm = mesh->dm;
+    PetscCall(PetscObjectReference((PetscObject)dm));
+  }
   ++mesh->generation;
   PetscCall(AbutMeshSetDM_Private(mesh, dm));
   PetscCall(PetscLogEventEnd(ABUTMESH_Adapt, mesh, 0, 0, 0));
@@ -419,6 +427,7 @@ PetscErrorCode AbutMeshDestroy(AbutMesh *mesh)
   }
   PetscCall(AbutMeshTopologyReset_Private(*mesh));
   PetscCall(DMDestroy(&(*mesh)->dm));
+  for (PetscInt side = 0; side < ABUT_BOX_SIDES; ++side) PetscCall(PetscFree((*mesh)->knot[side]));
   PetscTryTypeMethod(*mesh, destroy);
   PetscCall(AbutExpressionDestroy(&(*mesh)->size));
   PetscCall(PetscHeaderDestroy(mesh));

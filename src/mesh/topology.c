@@ -80,6 +80,7 @@ PetscErrorCode AbutMeshTopologyBuild_Private(AbutMesh mesh)
   PetscCall(AbutTopologyVertices_Private(mesh, vStart));
   PetscCall(AbutTopologyCells_Private(mesh, cStart, vStart, vEnd));
   PetscCall(AbutMeshEdgesBuild_Private(mesh));
+  PetscCall(AbutMeshMoveToTies_Private(mesh, t->nvertices, (PetscReal *)t->x)); /* the rest knows the coordinates of the DMPLEX */
   PetscCall(AbutMeshNodesBuild_Private(mesh));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -13,7 +13,8 @@ static PetscReal AbutPairPlace_Private(const AbutSide *m, PetscInt i)
 static PetscReal AbutPairEdgeOfGap_Private(AbutPair pair, const PetscReal g[], const PetscReal p[], PetscInt in, PetscInt step)
 {
   const AbutSide *m    = pair->nodes[pair->which];
-  const PetscReal last = AbutPairPlace_Private(m, in), h = PetscAbsReal(AbutPairPlace_Private(m, in + step) - last);
+  const PetscInt  end  = PetscMin(PetscMax(in + step * pair->order[0], 0), m->n - 1);
+  const PetscReal last = AbutPairPlace_Private(m, in), h = PetscAbsReal(AbutPairPlace_Private(m, end) - last);
   PetscReal       s[3], y[3], ms = 0., my = 0., sy = 0., ss = 0., edge;
 
   for (PetscInt k = 0; k < 3; ++k) {

@@ -11,6 +11,7 @@ PetscErrorCode AbutSceneKeepEdges_Private(AbutScene scene)
   PetscFunctionBegin;
   PetscCall(PetscFree(scene->edge));
   scene->nedges = 0;
+  for (PetscInt i = 0; i < scene->npairs; ++i) scene->tied[i] = 0;
   PetscCall(PetscMalloc1(ABUT_EDGES_MAX * scene->npairs, &scene->edge));
   for (PetscInt i = 0; i < scene->npairs; ++i) {
     const PetscReal *u[2], *p;
@@ -23,6 +24,7 @@ PetscErrorCode AbutSceneKeepEdges_Private(AbutScene scene)
     for (PetscInt e = 0; e < n; ++e) {
       AbutContactEdge *edge = &scene->edge[scene->nedges++];
 
+      edge->pair = i;
       PetscCall(AbutPairGetBodies(scene->pair[i], edge->body, edge->side));
       for (PetscInt d = 0; d < 2; ++d) edge->x[d] = x[e][d];
     }
@@ -99,7 +101,48 @@ static PetscErrorCode AbutSceneJump_Private(AbutScene scene, AbutBody body, cons
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A new mesh for one body */
+/* Is a vertex of this body to lie on each edge? */
+static PetscErrorCode AbutSceneBodyFollows_Private(AbutScene scene, AbutBody body, PetscBool *follows)
+{
+  AbutMesh mesh;
+  PetscInt order;
+
+  PetscFunctionBegin;
+  PetscCall(AbutBodyGetMesh(body, &mesh));
+  PetscCall(AbutMeshGetOrder(mesh, &order));
+  *follows = PETSC_FALSE;
+  if (scene->adaptor && scene->npairs) PetscCall(AbutAdaptorFollows(scene->adaptor, order, follows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The vertices nearest to the edges are tied to them */
+static PetscErrorCode AbutSceneTieBody_Private(AbutScene scene, AbutBody body)
+{
+  AbutMesh  mesh;
+  AbutTie  *tie;
+  PetscInt  n = 0;
+  PetscBool follows, found;
+
+  PetscFunctionBegin;
+  PetscCall(AbutSceneBodyFollows_Private(scene, body, &follows));
+  if (!follows) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AbutBodyGetMesh(body, &mesh));
+  PetscCall(PetscMalloc1(scene->nedges, &tie));
+  for (PetscInt e = 0; e < scene->nedges; ++e) {
+    const PetscInt side = AbutSceneEdgeSide_Private(&scene->edge[e], body);
+
+    if (side < 0) continue;
+    PetscCall(AbutMeshFindTie(mesh, side, scene->edge[e].x, &tie[n], &found));
+    if (!found) continue;
+    ++n;
+    ++scene->tied[scene->edge[e].pair];
+  }
+  PetscCall(AbutMeshSetTies(mesh, n, tie));
+  PetscCall(PetscFree(tie));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A new mesh for one body; without marks only ties may move it */
 PetscErrorCode AbutSceneAdaptBody_Private(AbutScene scene, AbutBody body, const PetscBool mark[])
 {
   AbutMesh  mesh;
@@ -108,9 +151,28 @@ PetscErrorCode AbutSceneAdaptBody_Private(AbutScene scene, AbutBody body, const 
   PetscFunctionBegin;
   PetscCall(AbutBodyGetMesh(body, &mesh));
   PetscCall(PetscMalloc1(scene->nedges, &level));
-  PetscCall(AbutSceneWantedLevels_Private(scene, body, mark, level));
+  if (mark) PetscCall(AbutSceneWantedLevels_Private(scene, body, mark, level));
+  PetscCall(AbutSceneTieBody_Private(scene, body));
   PetscCall(AbutMeshAdapt(mesh, mark));
-  PetscCall(AbutSceneJump_Private(scene, body, level));
+  if (mark) PetscCall(AbutSceneJump_Private(scene, body, level));
   PetscCall(PetscFree(level));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AbutSceneRecordTies_Private(AbutScene scene)
+{
+  PetscBool follows = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < scene->nbodies && !follows; ++b)
+    if (scene->estimates[b]) PetscCall(AbutSceneBodyFollows_Private(scene, scene->body[b], &follows));
+  for (PetscInt i = 0; i < scene->npairs && follows; ++i) {
+    const char *name;
+    char        key[256];
+
+    PetscCall(AbutPairGetName(scene->pair[i], &name));
+    PetscCall(PetscSNPrintf(key, sizeof(key), "pair.%s.tied", name));
+    PetscCall(AbutRecorderSetInt(scene->recorder, key, scene->tied[i]));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

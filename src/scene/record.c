@@ -201,6 +201,7 @@ PetscErrorCode AbutSceneRecord_Private(AbutScene scene, PetscBool *consistent)
   PetscCall(AbutSceneRecordSweeps_Private(scene));
   PetscCall(AbutSceneRecordBodies_Private(scene, consistent));
   PetscCall(AbutSceneRecordPairs_Private(scene, consistent));
+  PetscCall(AbutSceneRecordTies_Private(scene));
   PetscCall(AbutSceneRecordEstimates_Private(scene));
   PetscCall(AbutSceneRecordBudget_Private(scene));
   PetscCall(AbutSceneRecordProbes_Private(scene));

@@ -123,7 +123,7 @@ static PetscErrorCode AbutSceneAdapt_Private(AbutScene scene, PetscBool *const m
     PetscCall(AbutSceneSolverFromOptions_Private(scene));
   }
   for (PetscInt b = 0; b < scene->nbodies; ++b) {
-    if (!marks[b]) continue;
+    if (!scene->estimates[b]) continue;
     PetscCall(AbutSceneAdaptBody_Private(scene, scene->body[b], marks[b]));
     PetscCall(VecDestroy(&scene->eta[b]));
   }

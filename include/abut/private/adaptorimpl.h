@@ -30,7 +30,8 @@ struct _p_AbutAdaptor {
   PetscInt  nbodies; /* named in -adaptor_bodies */
   char     *body[ABUT_BODIES_MAX];
   PetscInt  max_level, max_unknowns;
-  PetscInt  jump;      /* levels that a refined cell at a contact edge goes up */
+  PetscInt  jump; /* levels that a refined cell at a contact edge goes up */
+  PetscBool follow, followset;
   PetscReal target;    /* relative error of all bodies together, of a type that has a share */
   PetscReal allowance; /* relative error that a cell of the body marked next may have, likewise */
   void     *data;      /* of the type */

@@ -38,6 +38,9 @@ struct _p_AbutMesh {
   PetscInt         generation; /* counts the meshes: 0 is the first */
   AbutBasis        basis;
   AbutMeshTopology topology;
+  PetscInt         nknots[ABUT_BOX_SIDES]; /* of the displacement along each side, see ties.c; 0: none */
+  PetscReal       *knot[ABUT_BOX_SIDES];   /* [2*nknots] reference position and displacement */
+  PetscBool        tiesmoved;              /* since the topology was made */
   void            *data;
 };
 
@@ -56,6 +59,7 @@ PETSC_INTERN PetscErrorCode AbutMeshTopologyBuild_Private(AbutMesh);
 PETSC_INTERN PetscErrorCode AbutMeshTopologyReset_Private(AbutMesh);
 PETSC_INTERN PetscErrorCode AbutMeshEdgesBuild_Private(AbutMesh);
 PETSC_INTERN PetscErrorCode AbutMeshNodesBuild_Private(AbutMesh);
+PETSC_INTERN PetscErrorCode AbutMeshMoveToTies_Private(AbutMesh, PetscInt, PetscReal[]);
 PETSC_INTERN PetscErrorCode AbutMeshSidesBuild_Private(AbutMesh);
 PETSC_INTERN void           AbutMeshGetEdgeNodes_Private(const AbutMeshTopology *, PetscInt, PetscInt, PetscInt[]);
 PETSC_EXTERN PetscLogEvent  ABUTMESH_Adapt;

@@ -15,6 +15,7 @@ typedef struct {
 
 /* An end of a contact that is not the end of a side */
 typedef struct {
+  PetscInt  pair;
   AbutBody  body[2]; /* of the pair */
   PetscInt  side[2];
   PetscReal x[2];
@@ -62,6 +63,7 @@ struct _p_AbutScene {
 
   PetscInt         nedges; /* of the last meshes that changed */
   AbutContactEdge *edge;
+  PetscInt         tied[ABUT_MAX_NAMES]; /* vertices of the meshes that were moved to an edge of each pair */
 };
 
 PETSC_INTERN PetscErrorCode AbutSceneReadNames_Private(AbutScene, AbutOptionItems, const char[], const char[], PetscInt *, char *[]);
@@ -78,6 +80,7 @@ PETSC_INTERN PetscErrorCode AbutScenePrintEnd_Private(AbutScene);
 /* edges.c */
 PETSC_INTERN PetscErrorCode AbutSceneKeepEdges_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutSceneAdaptBody_Private(AbutScene, AbutBody, const PetscBool[]);
+PETSC_INTERN PetscErrorCode AbutSceneRecordTies_Private(AbutScene);
 /* budget.c */
 PETSC_INTERN PetscErrorCode AbutSceneGetDiscretisation_Private(AbutScene, PetscReal *, PetscReal[]);
 PETSC_INTERN PetscErrorCode AbutSceneRecordBudget_Private(AbutScene);

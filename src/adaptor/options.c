@@ -1,0 +1,181 @@
+#include <abut/private/adaptorimpl.h> /*I "abutadaptor.h" I*/
+
+/* What the user says of an adaptation */
+
+/* All bodies are adapted */
+PetscErrorCode AbutAdaptorClearBodies_Private(AbutAdaptor adaptor)
+{
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < adaptor->nbodies; ++i) PetscCall(PetscFree(adaptor->body[i]));
+  adaptor->nbodies = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Splits "lower, upper" */
+static PetscErrorCode AbutAdaptorSetBodies_Private(AbutAdaptor adaptor, char list[])
+{
+  MPI_Comm comm = PetscObjectComm((PetscObject)adaptor);
+  char    *at   = list;
+
+  PetscFunctionBegin;
+  PetscCall(AbutAdaptorClearBodies_Private(adaptor));
+  while (at) {
+    char  *name = at + strspn(at, " "), *end = strchr(at, ',');
+    size_t n;
+
+    at = end ? end + 1 : NULL;
+    if (end) *end = 0;
+    n = strcspn(name, " ");
+    AbutCheckInput(n, comm,
+                   "adaptor_bodies: a name is empty; give names of bodies separated by commas, or leave the key out for all bodies");
+    AbutCheckInput(adaptor->nbodies < ABUT_BODIES_MAX, comm, "adaptor_bodies: more than %d names; leave the key out for all bodies",
+                   ABUT_BODIES_MAX);
+    name[n] = 0;
+    PetscCall(PetscStrallocpy(name, &adaptor->body[adaptor->nbodies++]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutAdaptorSetFromOptions - Reads what is refined and how far
+
+   Collective
+
+   Input Parameter:
+.  adaptor - the adaptor
+
+   Options Database Keys:
++  -adaptor_type <threshold,equal,doerfler> - how cells are chosen
+.  -adaptor_threshold <0.1>        - threshold: delta of eq. (27) of the paper, refine cells whose indicator is above
+.  -adaptor_target <0.05>          - equal and doerfler: end when the error of all bodies together is estimated to be at most this, relative
+.  -adaptor_bulk <0.5>             - doerfler: the refined cells hold this part of the square of the error of all bodies together
+.  -adaptor_jump <1>               - a marked cell at the edge of a contact goes up this many levels at once
+.  -adaptor_follow <bool>          - the meshes of adapted bodies move such that a vertex lies on each edge of their contacts; by default
+                                     where the order is 2 or more
+.  -adaptor_bodies list            - names of the bodies to adapt, separated by commas; all if it is not given
+.  -adaptor_max_level <8>          - cells of this level are not refined any more; the first mesh has level 0
+-  -adaptor_max_unknowns <1000000> - of one body: no refinement that would pass it
+
+   Level: intermediate
+
+   Notes:
+   The fewest unknowns come from `-adaptor_type doerfler -adaptor_bulk 0.5`, the fewest meshes from `-adaptor_bulk 0.7 -adaptor_jump 2`;
+   in a scene file `adaptor: {type: doerfler, target: 0.02, bulk: 0.7, jump: 2, follow: true}`.
+
+   Where the pressure ends inside a cell, the force is off by a part that depends on where, of the order of the square of its length,
+   whatever the order of the displacement. With `-adaptor_follow` the vertex that is nearest to each end of a contact, as estimated on the
+   last meshes (`AbutPairGetEdges()`), is tied to it on both sides (`AbutMeshSetTies()`). At order 1 this gains little.
+
+.seealso: `AbutAdaptorMark()`, `AbutAdaptorGetBodies()`
+@*/
+PetscErrorCode AbutAdaptorSetFromOptions(AbutAdaptor adaptor)
+{
+  MPI_Comm  comm       = PetscObjectComm((PetscObject)adaptor);
+  char      type[256]  = ABUTADAPTORTHRESHOLD;
+  char      list[4096] = "";
+  PetscBool set;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(adaptor, ABUTADAPTOR_CLASSID, 1);
+  if (((PetscObject)adaptor)->type_name) PetscCall(PetscStrncpy(type, ((PetscObject)adaptor)->type_name, sizeof(type)));
+  PetscObjectOptionsBegin((PetscObject)adaptor);
+  PetscCall(AbutOptionsString(PetscOptionsObject, "-adaptor_type", "how cells are chosen for refinement: threshold, equal, doerfler", type,
+                              sizeof(type), NULL));
+  PetscCall(AbutAdaptorSetType(adaptor, type));
+  PetscCall(AbutOptionsString(PetscOptionsObject, "-adaptor_bodies", "names of the bodies to adapt, all if not given", list, sizeof(list),
+                              &set));
+  if (set) PetscCall(AbutAdaptorSetBodies_Private(adaptor, list));
+  PetscCall(AbutOptionsInt(PetscOptionsObject, "-adaptor_max_level", "cells of this level are not refined any more", &adaptor->max_level,
+                           NULL));
+  AbutCheckInput(adaptor->max_level >= 0 && adaptor->max_level <= ABUT_LEVEL_MAX, comm,
+                 "adaptor_max_level: %" PetscInt_FMT " is not a level; give a number from 0 to %d", adaptor->max_level, ABUT_LEVEL_MAX);
+  PetscCall(AbutOptionsInt(PetscOptionsObject, "-adaptor_max_unknowns", "of one body: no refinement that would pass it",
+                           &adaptor->max_unknowns, NULL));
+  AbutCheckInput(adaptor->max_unknowns > 0, comm,
+                 "adaptor_max_unknowns: %" PetscInt_FMT " is not above 0; give a number that fits the memory, for example 1000000",
+                 adaptor->max_unknowns);
+  PetscCall(AbutOptionsInt(PetscOptionsObject, "-adaptor_jump", "levels that a marked cell at the edge of a contact goes up at once",
+                           &adaptor->jump, NULL));
+  AbutCheckInput(adaptor->jump > 0 && adaptor->jump <= ABUT_LEVEL_MAX, comm,
+                 "adaptor_jump: %" PetscInt_FMT " is no number of levels; give a number from 1 to %d, for example 2", adaptor->jump,
+                 ABUT_LEVEL_MAX);
+  PetscCall(AbutOptionsBool(PetscOptionsObject, "-adaptor_follow", "meshes move with the edges of the contacts", &adaptor->follow, &set));
+  if (set) adaptor->followset = PETSC_TRUE;
+  PetscTryTypeMethod(adaptor, setfromoptions, PetscOptionsObject);
+  PetscOptionsEnd();
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutAdaptorGetBodies - Gets the names given by `-adaptor_bodies`
+
+   Not Collective
+
+   Input Parameter:
+.  adaptor - the adaptor
+
+   Output Parameters:
++  n    - how many; 0 if the key was not given, which means all bodies
+-  name - the names, owned by the adaptor
+
+   Level: intermediate
+
+.seealso: `AbutAdaptorSetFromOptions()`
+@*/
+PetscErrorCode AbutAdaptorGetBodies(AbutAdaptor adaptor, PetscInt *n, const char *const *name[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(adaptor, ABUTADAPTOR_CLASSID, 1);
+  *n    = adaptor->nbodies;
+  *name = (const char *const *)adaptor->body;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutAdaptorGetLevels - How far cells at the edge of a contact go up at once, and how far cells may go at all
+
+   Not Collective
+
+   Input Parameter:
+.  adaptor - the adaptor
+
+   Output Parameters:
++  jump      - levels that a marked cell at the edge of a contact goes up
+-  max_level - the last level
+
+   Level: developer
+
+.seealso: `AbutAdaptorSetFromOptions()`
+@*/
+PetscErrorCode AbutAdaptorGetLevels(AbutAdaptor adaptor, PetscInt *jump, PetscInt *max_level)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(adaptor, ABUTADAPTOR_CLASSID, 1);
+  *jump      = adaptor->jump;
+  *max_level = adaptor->max_level;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutAdaptorFollows - Whether meshes are to move with the edges of the contacts
+
+   Not Collective
+
+   Input Parameters:
++  adaptor - the adaptor
+-  order   - of the displacement in the mesh
+
+   Output Parameter:
+.  follows - what `-adaptor_follow` says; by default true from order 2 on
+
+   Level: developer
+
+.seealso: `AbutAdaptorSetFromOptions()`, `AbutMeshSetTies()`
+@*/
+PetscErrorCode AbutAdaptorFollows(AbutAdaptor adaptor, PetscInt order, PetscBool *follows)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(adaptor, ABUTADAPTOR_CLASSID, 1);
+  *follows = adaptor->followset ? adaptor->follow : (PetscBool)(order > 1);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

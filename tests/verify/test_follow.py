@@ -1,0 +1,91 @@
+"""Meshes that move with the edge of the contact: a vertex of both sides lies on the edge that the last meshes gave. Where it is on two layers was computed without Abut,
+see examples/layers/reference.json."""
+import os, tempfile
+
+from abut import LAYERS, read_csv, run
+
+A = 0.9926420758
+
+
+def follow(*options, adaptor="type: doerfler, target: 0.03", ranks=1):
+    """A run of the scene with exact contact: its cycles, and the x of the nodes of both sides on the last meshes, with the pressures"""
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "scene.yml")
+        with open(LAYERS) as old, open(path, "w") as new:
+            new.writelines(line for line in old if not line.startswith(("adaptor:", "estimator:", "snes:")))
+            new.write(f"adaptor: {{{adaptor}, follow: true}}\n")
+        files = f"-record_csv {folder}/run.csv -output_profile {folder}/profile.csv"
+        r = run(path, "-mid_pair_penalty 0 -upper_mesh_cells 8,2 -upper_mesh_shape quad -estimator_type zz", *options, files, ranks=ranks)
+        cycles, profile = read_csv(f"{folder}/run.csv"), read_csv(f"{folder}/profile.csv")
+    assert r["pair.mid.tied"] == cycles[-1]["pair.mid.tied"]
+    pressures = sorted((row["x"], row["pressure"]) for row in profile if row["side"] == "pressure")
+    return cycles, [sorted(row["x"] for row in profile if str(row["side"]) == side) for side in ("1", "2")], pressures
+
+
+def test_a_vertex_of_both_sides_lies_on_the_edge():
+    for shape in ("quad", "triangle"):
+        for penalty in (0, 0.05):
+            cycles, sides, _ = follow(f"-lower_mesh_shape {shape} -upper_mesh_shape {shape} -mid_pair_penalty {penalty}")
+            assert [row["pair.mid.tied"] for row in cycles] == [0] + [2] * (len(cycles) - 1) and len(cycles) > 4, cycles
+            before, last = (row["pair.mid.contact_edge"] for row in cycles[-2:])
+            for nodes in sides:
+                vertex = min(nodes, key=lambda node: abs(node - before))
+                assert abs(vertex - before) < 1e-9, (shape, penalty, nodes, before)
+                assert nodes[0] == 0 and nodes[-1] == 4, nodes
+                h = min(b - a for a, b in zip(nodes, nodes[1:]))
+                assert h < 0.05 and abs(vertex - last) < 0.2 * h, (shape, penalty, h, vertex, last)
+                assert penalty or abs(last - A) < 0.2 * h, (shape, last)
+
+
+def test_the_edge_converges():
+    cycles, _, _ = follow(adaptor="type: doerfler, target: 0.01, bulk: 0.7, jump: 2")
+    error = [abs(row["pair.mid.contact_edge"] - A) for row in cycles]
+    assert error[0] > 0.05 and max(error[-2:]) < 5e-4, error
+
+
+def test_several_edges_on_one_side():
+    """Two bumps, mirror images at x = 2: four edges on each side"""
+    cycles, sides, pressures = follow("-mid_pair_gap", "1e-3*min((x-1.1)^2,(x-2.9)^2)+2e-4", "-upper_bc_top_u2 -0.6e-3", "-upper_mesh_cells 16,4 -lower_mesh_cells 12,3")
+    assert [row["pair.mid.tied"] for row in cycles[2:]] == [8] * (len(cycles) - 2), cycles
+    runs = []  # of closed nodes: where each ends, on the side with the pressures
+    for x, p in pressures:
+        if p > 0:
+            runs = runs if runs and runs[-1][2] else runs + [[x, x, True]]
+            runs[-1][1] = x
+        elif runs:
+            runs[-1][2] = False
+    assert len(runs) == 2, runs
+    for nodes in sides:
+        assert all(b - a > 2e-3 for a, b in zip(nodes, nodes[1:])), nodes
+
+
+def test_a_mesh_that_is_not_refined_moves_all_the_same():
+    """The upper body is too stiff to have an error that counts"""
+    cycles, sides, _ = follow("-upper_material_young 2e8 -upper_mesh_cells 10,3")
+    assert cycles[-1]["body.upper.cells"] == 30 and cycles[-1]["pair.mid.tied"] == 2, cycles[-1]
+    for nodes in sides:
+        assert min(abs(node - cycles[-2]["pair.mid.contact_edge"]) for node in nodes) < 1e-9, (nodes, cycles[-2])
+
+
+def test_traces_cross_over_to_moved_meshes():
+    """A loop that begins with the last trace ends where one does that begins anew, in fewer sweeps"""
+    loop = "-snes_type ddneumann -snes_ddneumann_gamma 0 -snes_ddneumann_start zero -mid_pair_penalty 0.5 -adaptor_max_level 3"
+    warm, cold = (follow(loop, more, adaptor="type: doerfler, target: 0.06")[0] for more in ("-scene_cold false", "-scene_cold true"))
+    assert len(warm) == len(cold) > 3
+    for a, b in zip(warm[1:], cold[1:]):
+        assert abs(a["pair.mid.force"] / b["pair.mid.force"] - 1) < 1e-6, (a, b)
+        assert a["sweeps_cycle"] < b["sweeps_cycle"] - 5, (a["sweeps_cycle"], b["sweeps_cycle"])
+
+
+def test_any_number_of_ranks_makes_the_same_meshes():
+    for shape in ("quad", "triangle"):
+        runs = [follow(f"-upper_mesh_shape {shape}", adaptor="type: doerfler, target: 0.06, jump: 2", ranks=ranks) for ranks in (1, 2, 3, 4)]
+        for cycles, sides, _ in runs[1:]:
+            assert len(cycles) == len(runs[0][0]) and [len(nodes) for nodes in sides] == [len(nodes) for nodes in runs[0][1]]
+            assert all(abs(a - b) < 1e-8 for one, other in zip(sides, runs[0][1]) for a, b in zip(one, other)), (sides, runs[0][1])
+            assert abs(cycles[-1]["pair.mid.force"] / runs[0][0][-1]["pair.mid.force"] - 1) < 1e-8
+
+
+def test_by_default_nothing_moves_at_order_1():
+    r = run(LAYERS, "-adaptor_threshold 0.3 -upper_mesh_cells 8,2 -estimator_type zz -snes_type ddactive")
+    assert "pair.mid.tied" not in r and r["cycles"] > 1, r
