@@ -92,7 +92,7 @@ PetscErrorCode AbutMeshSumAtEdges(AbutMesh mesh, PetscInt bs, PetscReal v[])
   PetscInt                pStart, pEnd, eStart, nroots;
   PetscReal              *all;
   PetscSF                 sf;
-  MPI_Datatype            block;
+  MPI_Datatype            block = MPIU_REAL; /* PetscSF does not add a block of one as a number */
   PetscMPIInt             n;
 
   PetscFunctionBegin;
@@ -102,8 +102,10 @@ PetscErrorCode AbutMeshSumAtEdges(AbutMesh mesh, PetscInt bs, PetscReal v[])
   PetscCall(DMPlexGetChart(mesh->dm, &pStart, &pEnd));
   PetscCall(DMPlexGetDepthStratum(mesh->dm, 1, &eStart, NULL));
   PetscCall(PetscMPIIntCast(bs, &n));
-  PetscCallMPI(MPI_Type_contiguous(n, MPIU_REAL, &block));
-  PetscCallMPI(MPI_Type_commit(&block));
+  if (n > 1) {
+    PetscCallMPI(MPI_Type_contiguous(n, MPIU_REAL, &block));
+    PetscCallMPI(MPI_Type_commit(&block));
+  }
   PetscCall(PetscCalloc1(bs * (pEnd - pStart), &all));
   PetscCall(PetscArraycpy(all + bs * (eStart - pStart), v, bs * t->nedges));
   PetscCall(PetscSFReduceBegin(sf, block, all, all, MPI_SUM));
@@ -112,6 +114,6 @@ PetscErrorCode AbutMeshSumAtEdges(AbutMesh mesh, PetscInt bs, PetscReal v[])
   PetscCall(PetscSFBcastEnd(sf, block, all, all, MPI_REPLACE));
   PetscCall(PetscArraycpy(v, all + bs * (eStart - pStart), bs * t->nedges));
   PetscCall(PetscFree(all));
-  PetscCallMPI(MPI_Type_free(&block));
+  if (n > 1) PetscCallMPI(MPI_Type_free(&block));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
