@@ -37,7 +37,7 @@ def test_the_loop_of_the_paper_stops_early():
 
 
 def test_estimators_refine_at_the_contact():
-    for name in ("estimator/fembem.opts", "estimator/zz.opts"):
+    for name in ("estimator/fembem.opts", "estimator/zz.opts", "estimator/residual.opts"):
         record = solve(name)
         assert 16 < record["body.lower.cells"] < 256, (name, record["body.lower.cells"])
 
