@@ -71,7 +71,8 @@ static PetscErrorCode AbutEstimatorSetFromOptions_Residual(AbutEstimator est, Ab
   PetscFunctionBegin;
   PetscCall(AbutEstimatorGetData(est, &residual));
   PetscCall(AbutOptionsReal(PetscOptionsObject, "-estimator_residual_constant",
-                            "what the residual is multiplied by; 0.25 for quads, 0.3 for triangles, if not given", &residual->constant, &set));
+                            "what the residual is multiplied by; 0.25 for quads, 0.3 for triangles, if not given", &residual->constant,
+                            &set));
   AbutCheckInput(!set || residual->constant > 0., PetscObjectComm((PetscObject)est),
                  "estimator_residual_constant: %g is not positive; give what the residual is multiplied by", (double)residual->constant);
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -134,8 +134,7 @@ PetscErrorCode ResidualAddJumps(AbutBody body, const ResidualRule *rule, PetscRe
     PetscCall(ResidualGetHeight(mesh, i / t->corners, i % t->corners, &height, &length));
     for (PetscInt j = 0; j < n; ++j)
       for (PetscInt q = 0; q < 2 * rule->n; ++q)
-        square[i / t->corners] +=
-          0.5 * height * length / n / t->order * rule->w[q / 2] * PetscSqr(jump[2 * rule->n * piece[j].slot + q]);
+        square[i / t->corners] += 0.5 * height * length / n / t->order * rule->w[q / 2] * PetscSqr(jump[2 * rule->n * piece[j].slot + q]);
   }
   PetscCall(PetscFree(jump));
   PetscCall(SidesDestroy(&sides));

@@ -3,7 +3,8 @@
 /* Vertices of a side that are held at wanted positions, so that a cell begins where something else does, for example a contact.
 
    The DMPLEX keeps its coordinates, the reference; those of AbutMeshTopology are mapped: along each side of the box by a piecewise linear
-   function, whose displacement falls off linearly towards the opposite side. No cell is folded: the slopes A and B of the map along x and
+   function, whose displacement reaches through the body, so that rectangles stay rectangles; if the opposite side has ties too, that of each
+   falls off linearly towards the other. No cell is folded: the slopes A and B of the map along x and
    y are at least 1/2, and where both directions have ties, the displacements are at most a fifth of the box, so that the slopes C and D
    across obey |C D| <= (2/5)^2 < A B. */
 
@@ -32,7 +33,8 @@ static void AbutTiesMap_Private(AbutMesh mesh, PetscReal x[2])
 
   for (PetscInt side = 0; side < ABUT_BOX_SIDES; ++side) {
     const PetscInt  d      = side / 2;
-    const PetscReal height = mesh->upper[d] - mesh->lower[d], weight = (side % 2 ? x[d] - mesh->lower[d] : mesh->upper[d] - x[d]) / height;
+    const PetscReal up     = (x[d] - mesh->lower[d]) / (mesh->upper[d] - mesh->lower[d]);
+    const PetscReal weight = !mesh->nknots[side ^ 1] ? 1. : side % 2 ? up : 1. - up;
 
     u[!d] += weight * AbutSideDisplacement_Private(mesh->nknots[side], mesh->knot[side], x[!d]);
   }

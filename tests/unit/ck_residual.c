@@ -232,8 +232,9 @@ END_TEST
 
 static void CheckRanks(int i, PetscInt n, PetscInt times)
 {
-  CkField   field[2] = {{.at = CkSmooth}, {.at = CkSmooth}};
-  AbutBody  all = Body(PETSC_COMM_WORLD, &field[0], i, n, CkScattered, times), one = Body(PETSC_COMM_SELF, &field[1], i, n, CkScattered, times);
+  CkField  field[2] = {{.at = CkSmooth}, {.at = CkSmooth}};
+  AbutBody all      = Body(PETSC_COMM_WORLD, &field[0], i, n, CkScattered, times),
+           one      = Body(PETSC_COMM_SELF, &field[1], i, n, CkScattered, times);
   PetscReal total[2], largest[2];
 
   Estimate(all, &total[0], &largest[0], NULL);
@@ -263,14 +264,16 @@ START_TEST(the_contact_edge_of_two_layers_is_seen)
 
   for (PetscInt n = 8; n <= 32; n *= 2) {
     CkOk(PetscSNPrintf(text, sizeof(text),
-                       "-scene_bodies lower,upper -scene_pairs mid -mid_pair_bodies upper,lower -mid_pair_sides bottom,top -mid_pair_gap 1e-3*x^2 "
+                       "-scene_bodies lower,upper -scene_pairs mid -mid_pair_bodies upper,lower -mid_pair_sides bottom,top -mid_pair_gap "
+                       "1e-3*x^2 "
                        "-mid_pair_theta 0 -lower_mesh_box 0,0,4,1 -upper_mesh_box 0,1,4,2 -lower_mesh_cells %d,%d -upper_mesh_cells %d,%d "
                        "-lower_mesh_order %d -upper_mesh_order %d -lower_mesh_shape %s -upper_mesh_shape %s "
                        "-lower_material_young 2.1e5 -lower_material_poisson 0.3 "
-                       "-upper_material_young 2.1e5 -upper_material_poisson 0.3 -lower_bc_left_u1 0 -upper_bc_left_u1 0 -lower_bc_bottom_u2 0 "
+                       "-upper_material_young 2.1e5 -upper_material_poisson 0.3 -lower_bc_left_u1 0 -upper_bc_left_u1 0 "
+                       "-lower_bc_bottom_u2 0 "
                        "-upper_bc_top_u2 -1.366e-3",
-                       (int)(4 * n), (int)n, (int)(4 * n), (int)n, (int)Order(_i), (int)Order(_i), Shape(_i) == ABUT_QUAD ? "quad" : "triangle",
-                       Shape(_i) == ABUT_QUAD ? "quad" : "triangle"));
+                       (int)(4 * n), (int)n, (int)(4 * n), (int)n, (int)Order(_i), (int)Order(_i),
+                       Shape(_i) == ABUT_QUAD ? "quad" : "triangle", Shape(_i) == ABUT_QUAD ? "quad" : "triangle"));
     CkOptions(text);
     CkOk(AbutSceneCreate(PETSC_COMM_WORLD, &scene));
     CkOk(AbutSceneSetFromOptions(scene));
@@ -279,8 +282,8 @@ START_TEST(the_contact_edge_of_two_layers_is_seen)
     ck_assert_int_eq(status, 0);
     CkOk(AbutSceneGetBody(scene, "lower", &body));
     Estimate(body, &total, &largest, worst);
-    PetscPrintf(PETSC_COMM_WORLD, "%s%d, h = 1/%d: largest %.4f at (%.3f, %.3f)\n", Shape(_i) == ABUT_QUAD ? "Q" : "P",
-                (int)Order(_i), (int)n, (double)largest, (double)worst[0], (double)worst[1]);
+    PetscPrintf(PETSC_COMM_WORLD, "%s%d, h = 1/%d: largest %.4f at (%.3f, %.3f)\n", Shape(_i) == ABUT_QUAD ? "Q" : "P", (int)Order(_i),
+                (int)n, (double)largest, (double)worst[0], (double)worst[1]);
     CkOk(AbutSceneDestroy(&scene));
     CkOptionsEnd();
   }
