@@ -66,7 +66,8 @@ PETSC_EXTERN PetscErrorCode AbutBodyGetEnergy(AbutBody, PetscReal *, PetscReal *
 PETSC_EXTERN PetscErrorCode AbutBodyGetReaction(AbutBody, PetscReal[2], PetscReal[2]);
 PETSC_EXTERN PetscErrorCode AbutBodyGetLinearResidual(AbutBody, PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutBodyGetLinearError(AbutBody, PetscReal *);
-PETSC_EXTERN PetscErrorCode AbutBodyGetAssemblyCost(AbutBody, PetscReal *, PetscInt *);
+PETSC_EXTERN PetscErrorCode AbutBodyGetSetUpCost(AbutBody, PetscReal *, PetscInt *, PetscReal *);
+PETSC_EXTERN PetscErrorCode AbutBodyGetLinearCost(AbutBody, PetscReal, PetscReal *);
 
 /* Stress (s11, s22, s12) of the last solve in local cell c at a reference point: [-1,1]^2 for quads, (0,0)(1,0)(0,1) for triangles */
 PETSC_EXTERN PetscErrorCode AbutBodyGetCellStress(AbutBody, PetscInt, const PetscReal[2], PetscReal[3]);

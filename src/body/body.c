@@ -169,6 +169,7 @@ PetscErrorCode AbutBodySetUp(AbutBody body)
 {
   const AbutMeshTopology *t;
   PetscInt                generation;
+  PetscLogDouble          begun, done;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, ABUTBODY_CLASSID, 1);
@@ -179,6 +180,7 @@ PetscErrorCode AbutBodySetUp(AbutBody body)
   PetscCall(AbutMeshGetGeneration(body->mesh, &generation));
   if (generation == body->generation) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(AbutBodyReset_Private(body));
+  PetscCall(PetscGetCPUTime(&begun));
   PetscCall(AbutMeshGetTopology(body->mesh, &t));
   PetscCall(PetscCalloc1(2 * t->nnodes, &body->nodeu));
   PetscCall(AbutElementCreate_Private(body->mesh, &body->element));
@@ -196,6 +198,9 @@ PetscErrorCode AbutBodySetUp(AbutBody body)
   PetscCall(AbutBodyChooseSolver_Private(body, 2 * t->nglobal, PETSC_FALSE));
   PetscCall(KSPSetOperators(body->ksp, body->A, body->P));
   PetscCall(AbutBodyGiveFactorRoom_Private(body));
+  PetscCall(AbutBodyFactor_Private(body));
+  PetscCall(PetscGetCPUTime(&done));
+  body->setupcpu   = done - begun;
   body->generation = generation;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

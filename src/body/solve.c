@@ -29,7 +29,7 @@ PetscErrorCode AbutBodySpread_Private(AbutBody body)
 }
 
 /* What the present forces and prescribed displacements make of the right-hand side of A: mu times the value in a prescribed row */
-static PetscErrorCode AbutBodyRightHandSide_Private(AbutBody body, Vec b)
+PetscErrorCode AbutBodyRightHandSide_Private(AbutBody body, Vec b)
 {
   const PetscInt    *row;
   const PetscScalar *g;

@@ -194,29 +194,3 @@ PetscErrorCode AbutBodyAssemble_Private(AbutBody body)
   PetscCall(PetscLogEventEnd(ABUTBODY_Assemble, body, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
-
-/*@
-   AbutBodyGetAssemblyCost - Seconds spent on element matrices and their insertion, and for how many cells
-
-   Collective
-
-   Input Parameter:
-.  body - the body
-
-   Output Parameters:
-+  seconds - over all meshes so far, the slowest rank
--  cells   - assembled so far, over all ranks
-
-   Level: developer
-
-.seealso: `AbutBodySetUp()`
-@*/
-PetscErrorCode AbutBodyGetAssemblyCost(AbutBody body, PetscReal *seconds, PetscInt *cells)
-{
-  MPI_Comm comm = PetscObjectComm((PetscObject)body);
-
-  PetscFunctionBegin;
-  PetscCallMPI(MPI_Allreduce(&body->assemblytime, seconds, 1, MPIU_REAL, MPIU_MAX, comm));
-  PetscCallMPI(MPI_Allreduce(&body->assemblycells, cells, 1, MPIU_INT, MPI_SUM, comm));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}

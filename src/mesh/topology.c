@@ -28,7 +28,7 @@ static PetscErrorCode AbutTopologyVertices_Private(AbutMesh mesh, PetscInt vStar
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode AbutTopologyCells_Private(AbutMesh mesh, PetscInt cStart, PetscInt vStart, PetscInt vEnd)
+static PetscErrorCode AbutTopologyCells_Private(AbutMesh mesh, PetscInt cStart, PetscInt vStart)
 {
   AbutMeshTopology *t = &mesh->topology;
   PetscInt         *cell, *level;
@@ -38,12 +38,15 @@ static PetscErrorCode AbutTopologyCells_Private(AbutMesh mesh, PetscInt cStart, 
   t->cell  = cell;
   t->level = level;
   for (PetscInt c = 0; c < t->ncells; ++c) {
-    PetscInt *closure = NULL, nclosure, n = 0, *v = cell + t->corners * c;
+    PetscInt       *v = cell + t->corners * c;
+    const PetscInt *side, *orientation, *ends, n = t->corners;
 
-    PetscCall(DMPlexGetTransitiveClosure(mesh->dm, c + cStart, PETSC_TRUE, &nclosure, &closure));
-    for (PetscInt i = 0; i < nclosure; ++i)
-      if (closure[2 * i] >= vStart && closure[2 * i] < vEnd) v[n++] = closure[2 * i] - vStart;
-    PetscCall(DMPlexRestoreTransitiveClosure(mesh->dm, c + cStart, PETSC_TRUE, &nclosure, &closure));
+    PetscCall(DMPlexGetCone(mesh->dm, c + cStart, &side));
+    PetscCall(DMPlexGetConeOrientation(mesh->dm, c + cStart, &orientation));
+    for (PetscInt k = 0; k < n; ++k) { /* each side begins where the one before it ends */
+      PetscCall(DMPlexGetCone(mesh->dm, side[k], &ends));
+      v[k] = ends[orientation[k] < 0] - vStart;
+    }
     {
       const PetscReal *a = t->x + 2 * v[0], *b = t->x + 2 * v[1], *d = t->x + 2 * v[n - 1];
 
@@ -78,7 +81,7 @@ PetscErrorCode AbutMeshTopologyBuild_Private(AbutMesh mesh)
   incell    = t->nodes - t->corners * t->order;
   t->nnodes = t->nvertices + (t->order - 1) * t->nedges + incell * t->ncells;
   PetscCall(AbutTopologyVertices_Private(mesh, vStart));
-  PetscCall(AbutTopologyCells_Private(mesh, cStart, vStart, vEnd));
+  PetscCall(AbutTopologyCells_Private(mesh, cStart, vStart));
   PetscCall(AbutMeshEdgesBuild_Private(mesh));
   PetscCall(AbutMeshMoveToTies_Private(mesh, t->nvertices, (PetscReal *)t->x)); /* the rest knows the coordinates of the DMPLEX */
   PetscCall(AbutMeshNodesBuild_Private(mesh));

@@ -159,13 +159,22 @@ PetscErrorCode AbutSceneAdaptBody_Private(AbutScene scene, AbutBody body, const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Does any adapted body follow the edges? */
+PetscErrorCode AbutSceneFollows_Private(AbutScene scene, PetscBool *follows)
+{
+  PetscFunctionBegin;
+  *follows = PETSC_FALSE;
+  for (PetscInt b = 0; b < scene->nbodies && !*follows; ++b)
+    if (scene->estimates[b]) PetscCall(AbutSceneBodyFollows_Private(scene, scene->body[b], follows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode AbutSceneRecordTies_Private(AbutScene scene)
 {
-  PetscBool follows = PETSC_FALSE;
+  PetscBool follows;
 
   PetscFunctionBegin;
-  for (PetscInt b = 0; b < scene->nbodies && !follows; ++b)
-    if (scene->estimates[b]) PetscCall(AbutSceneBodyFollows_Private(scene, scene->body[b], &follows));
+  PetscCall(AbutSceneFollows_Private(scene, &follows));
   for (PetscInt i = 0; i < scene->npairs && follows; ++i) {
     const char *name;
     char        key[256];

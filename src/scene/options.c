@@ -105,17 +105,17 @@ static PetscErrorCode AbutSceneFreeNames_Private(PetscInt n, char *names[])
    are errors */
 static PetscErrorCode AbutSceneCyclesFromOptions_Private(AbutScene scene)
 {
-  PetscBool active;
+  PetscBool active, set = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscCall(PetscObjectTypeCompare((PetscObject)scene->snes, SNESDDACTIVE, &active));
   PetscObjectOptionsBegin((PetscObject)scene);
   if (active)
     PetscCall(AbutOptionsReal(PetscOptionsObject, "-scene_loop_share", "Part of the estimated error that the loop may leave",
-                              &scene->loop_share, NULL));
+                              &scene->loop_share, &set));
   PetscCall(AbutOptionsBool(PetscOptionsObject, "-scene_cold", "No trace from the last mesh", &scene->cold, NULL));
   PetscOptionsEnd();
-  AbutCheckInput(scene->loop_share >= 0. && scene->loop_share < 1., PetscObjectComm((PetscObject)scene),
+  AbutCheckInput(!set || (scene->loop_share >= 0. && scene->loop_share < 1.), PetscObjectComm((PetscObject)scene),
                  "scene_loop_share: %g; give a number from 0 up and below 1, for example 0.3", (double)scene->loop_share);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -133,8 +133,9 @@ static PetscErrorCode AbutSceneCyclesFromOptions_Private(AbutScene scene)
 .  -scene_pairs <names>    - possible contacts, see `AbutPairCreate()`
 .  -scene_probes <names>   - points of the record: `-NAME_probe_body`, `-NAME_probe_point x,y`
 .  -scene_interleave       - one sweep and one adaptation a cycle, Fig. 2 of the paper; needs ddneumann
-.  -scene_loop_share <0.3>  - with an adaptor and ddactive: part of the estimated error that the loop may leave on a mesh to be refined; 0:
-                              none
+.  -scene_loop_share <s>    - with an adaptor and ddactive: part of the estimated error that the loop may leave on a mesh to be refined; 0:
+                              none; default 0.3, where meshes follow the edges of contacts 0.01
+.  -record_time_ratio       - measures the processor time of the run in linear problems on its last mesh: `time.ratio`
 .  -scene_cold              - with an adaptor: every mesh begins without the traces and forces of the last one
 .  -scene_eps_u <0.0015>   - with it: the relative change of the traces at which the run ends
 .  -scene_tol T            - relative error in the energy norm to be reached: chooses theta, tolerances and refinement, see below
@@ -170,6 +171,8 @@ PetscErrorCode AbutSceneSetFromOptions(AbutScene scene)
   if (scene->interleave)
     PetscCall(AbutOptionsReal(PetscOptionsObject, "-scene_eps_u", "Relative change of the traces at the end", &scene->eps_u, NULL));
   PetscCall(AbutOptionsReal(PetscOptionsObject, "-scene_tol", "Relative error in the energy norm to be reached", &scene->tol, &hastol));
+  PetscCall(AbutOptionsBool(PetscOptionsObject, "-record_time_ratio", "Processor time in linear problems on the last mesh",
+                            &scene->wantsratio, NULL));
   PetscCall(PetscOptionsString("-adaptor_type", "Type of the adaptor", NULL, type, type, sizeof(type), &adapts));
   PetscCall(PetscOptionsString("-estimator_type", "Type of the estimator", NULL, type, type, sizeof(type), &estimates));
   PetscCall(AbutScenePlugins_Private(scene, PetscOptionsObject));

@@ -69,33 +69,37 @@ static PetscErrorCode AbutScenePrintPairs_Private(AbutScene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the run cost, per unit */
+/* What the run cost, and where; times of the bodies' set-up are part of the scene's */
 static PetscErrorCode AbutScenePrintCost_Private(AbutScene scene)
 {
-  MPI_Comm        comm      = PetscObjectComm((PetscObject)scene);
-  const PetscReal total     = scene->mark - scene->begun;
-  PetscReal       assembly  = 0.;
+  MPI_Comm        comm     = PetscObjectComm((PetscObject)scene);
+  const PetscReal total    = scene->mark - scene->begun;
+  PetscReal       assembly = 0., factor = 0.;
   PetscInt        assembled = 0, unknowns;
 
   PetscFunctionBegin;
-  PetscCall(PetscPrintf(comm, "seconds: %.2f = set-up %.2f + sweeps %.2f + estimate %.2f (%.0f %%) + adapt %.2f + output %.2f\n",
-                        (double)total, scene->seconds[ABUT_TIME_SETUP], scene->seconds[ABUT_TIME_SOLVE], scene->seconds[ABUT_TIME_ESTIMATE],
-                        total > 0. ? 100. * scene->seconds[ABUT_TIME_ESTIMATE] / total : 0., scene->seconds[ABUT_TIME_ADAPT],
-                        scene->seconds[ABUT_TIME_OUTPUT]));
   for (PetscInt b = 0; b < scene->nbodies; ++b) {
-    PetscReal seconds;
+    PetscReal seconds[2];
     PetscInt  cells;
 
-    PetscCall(AbutBodyGetAssemblyCost(scene->body[b], &seconds, &cells));
-    assembly += seconds;
+    PetscCall(AbutBodyGetSetUpCost(scene->body[b], &seconds[0], &cells, &seconds[1]));
+    assembly += seconds[0];
+    factor += seconds[1];
     assembled += cells;
   }
+  PetscCall(PetscPrintf(comm,
+                        "seconds: %.2f = set-up %.2f (factors %.2f) + sweeps %.2f + estimate %.2f (%.0f %%) + adapt %.2f + output %.2f\n",
+                        (double)total, scene->seconds[ABUT_TIME_SETUP], (double)factor, scene->seconds[ABUT_TIME_SOLVE],
+                        scene->seconds[ABUT_TIME_ESTIMATE], total > 0. ? 100. * scene->seconds[ABUT_TIME_ESTIMATE] / total : 0.,
+                        scene->seconds[ABUT_TIME_ADAPT], scene->seconds[ABUT_TIME_OUTPUT]));
   PetscCall(AbutSceneGetUnknowns_Private(scene, &unknowns));
   if (scene->snes && !scene->interleave && scene->cycle > 1)
     PetscCall(PetscPrintf(comm, "sweeps: %" PetscInt_FMT " on %" PetscInt_FMT " meshes, worth %.1f of the last mesh\n", scene->sweepsbefore,
                           scene->cycle, (double)(scene->work / unknowns)));
   PetscCall(PetscPrintf(comm, "element matrices and their insertion: %.2f microseconds a cell (%" PetscInt_FMT " cells)\n",
                         assembled ? (double)(1e6 * assembly / assembled) : 0., assembled));
+  if (scene->ratio > 0.)
+    PetscCall(PetscPrintf(comm, "processor time: that of %.1f linear problems on the last mesh\n", (double)scene->ratio));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -208,18 +208,49 @@ PetscErrorCode AbutSceneRecord_Private(AbutScene scene, PetscBool *consistent)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The price of contact and adaptivity in one number: the processor time of the whole run over that of one linear problem in every body on
+   the last mesh, solved to 1e-8 */
+PetscErrorCode AbutSceneRecordRatio_Private(AbutScene scene)
+{
+  MPI_Comm       comm   = PetscObjectComm((PetscObject)scene);
+  PetscReal      linear = 0.;
+  PetscLogDouble whole;
+
+  PetscFunctionBegin;
+  if (!scene->wantsratio) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscGetCPUTime(&whole));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &whole, 1, MPI_DOUBLE, MPI_SUM, comm));
+  for (PetscInt b = 0; b < scene->nbodies; ++b) {
+    PetscReal cpu;
+
+    PetscCall(AbutBodyGetLinearCost(scene->body[b], 1e-8, &cpu));
+    linear += cpu;
+  }
+  scene->ratio = whole / linear;
+  PetscCall(AbutRecorderSetReal(scene->recorder, "time.ratio", scene->ratio));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode AbutSceneRecordTimes_Private(AbutScene scene)
 {
   static const char *const key[ABUT_TIMES] = {"time.setup", "time.solve", "time.estimate", "time.adapt", "time.output"};
   MPI_Comm                 comm            = PetscObjectComm((PetscObject)scene);
-  PetscReal                seconds[ABUT_TIMES + 1], memory;
+  PetscReal                seconds[ABUT_TIMES + 1], memory, factor = 0.;
   struct rusage            usage;
 
   PetscFunctionBegin;
+  for (PetscInt b = 0; b < scene->nbodies; ++b) {
+    PetscReal of[2];
+    PetscInt  cells;
+
+    PetscCall(AbutBodyGetSetUpCost(scene->body[b], &of[0], &cells, &of[1]));
+    factor += of[1];
+  }
   for (PetscInt i = 0; i < ABUT_TIMES; ++i) seconds[i] = scene->seconds[i];
   seconds[ABUT_TIMES] = scene->mark - scene->begun;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, seconds, ABUT_TIMES + 1, MPIU_REAL, MPIU_MAX, comm));
   PetscCall(AbutRecorderSetReal(scene->recorder, "time.total", seconds[ABUT_TIMES]));
+  PetscCall(AbutRecorderSetReal(scene->recorder, "time.factor", factor));
   for (PetscInt i = 0; i < ABUT_TIMES; ++i) PetscCall(AbutRecorderSetReal(scene->recorder, key[i], seconds[i]));
   getrusage(RUSAGE_SELF, &usage);
   memory = 1024. * usage.ru_maxrss;

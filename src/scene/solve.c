@@ -172,12 +172,15 @@ static PetscErrorCode AbutSceneOutput_Private(AbutScene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+#define ABUT_LOOP_SHARE          0.3
+#define ABUT_LOOP_SHARE_FOLLOWED 0.01 /* where the next mesh depends on the edge of the contact, which must be right to a part of a cell */
+
 /* A mesh that is going to be refined need not be solved further than to a part of its own error; the last one is solved to the end. Of
    the first mesh the error is not known yet. */
 static PetscErrorCode AbutSceneLoosen_Private(AbutScene scene, PetscReal *rtol, PetscBool *loose)
 {
-  PetscReal       enough;
-  PetscBool       active;
+  PetscReal       enough, share = scene->loop_share;
+  PetscBool       active, follows;
   const PetscReal expected = 0.1;
 
   PetscFunctionBegin;
@@ -185,7 +188,9 @@ static PetscErrorCode AbutSceneLoosen_Private(AbutScene scene, PetscReal *rtol, 
   if (!scene->snes || !scene->adaptor) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscObjectTypeCompare((PetscObject)scene->snes, SNESDDACTIVE, &active));
   PetscCall(SNESGetTolerances(scene->snes, NULL, rtol, NULL, NULL, NULL));
-  enough = scene->loop_share * (scene->cycle ? scene->discretisation : expected);
+  PetscCall(AbutSceneFollows_Private(scene, &follows));
+  if (share < 0.) share = follows ? ABUT_LOOP_SHARE_FOLLOWED : ABUT_LOOP_SHARE;
+  enough = share * (scene->cycle ? scene->discretisation : expected);
   *loose = (PetscBool)(active && enough > *rtol);
   if (*loose) PetscCall(SNESSetTolerances(scene->snes, 0., enough, 0., PETSC_DEFAULT, PETSC_DEFAULT));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -266,6 +271,7 @@ PetscErrorCode AbutSceneSolve(AbutScene scene)
   if (scene->snes) PetscCall(AbutRecorderWriteProfile(scene->recorder, scene->iface, scene->npairs, scene->pair));
   PetscCall(AbutSceneClock_Private(scene, ABUT_TIME_OUTPUT));
   PetscCall(AbutSceneRecordTimes_Private(scene));
+  PetscCall(AbutSceneRecordRatio_Private(scene));
   PetscCall(AbutRecorderWrite(scene->recorder));
   PetscCall(AbutScenePrintEnd_Private(scene));
   PetscFunctionReturn(PETSC_SUCCESS);

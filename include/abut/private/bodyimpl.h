@@ -47,8 +47,9 @@ struct _p_AbutBody {
   KSP       ksp;
   PetscBool userksp; /* the user chose the solver: size does not */
   PetscInt  solves, iterations;
-  PetscReal assemblytime;
+  PetscReal assemblytime, factortime; /* seconds, of all meshes */
   PetscInt  assemblycells;
+  PetscReal setupcpu; /* processor seconds of AbutBodySetUp() on the present mesh */
 };
 
 PETSC_INTERN PetscErrorCode AbutBodySetConditionsFromOptions_Private(AbutBody, AbutOptionItems, char[], size_t);
@@ -66,6 +67,8 @@ PETSC_INTERN PetscErrorCode AbutBodyReset_Private(AbutBody);
 PETSC_INTERN PetscErrorCode AbutBodyNeedSetUp_Private(AbutBody);
 PETSC_INTERN PetscErrorCode AbutBodyModesSetUp_Private(AbutBody);
 PETSC_INTERN PetscErrorCode AbutBodyModesReset_Private(AbutBody);
+PETSC_INTERN PetscErrorCode AbutBodyFactor_Private(AbutBody);
+PETSC_INTERN PetscErrorCode AbutBodyRightHandSide_Private(AbutBody, Vec);
 PETSC_INTERN PetscErrorCode AbutBodySpread_Private(AbutBody);
 PETSC_INTERN PetscErrorCode AbutBodyBoundarySetUp_Private(AbutBody);
 PETSC_INTERN PetscErrorCode AbutBodyBoundaryReset_Private(AbutBody);

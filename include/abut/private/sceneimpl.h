@@ -56,6 +56,8 @@ struct _p_AbutScene {
   PetscInt       cycle, sweepsbefore, unknowns_estimator;
   PetscReal      work; /* sweeps times unknowns */
   PetscLogDouble begun, mark, seconds[ABUT_TIMES];
+  PetscBool      wantsratio;
+  PetscReal      ratio;          /* processor time of the run over that of one linear problem, 0 where it is not asked for */
   AbutErrors     errors;         /* of the last solve */
   PetscReal      discretisation; /* the same, of the estimated bodies */
   const char    *verdict;
@@ -74,6 +76,7 @@ PETSC_INTERN PetscErrorCode AbutScenePrintGamma_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutSceneGetUnknowns_Private(AbutScene, PetscInt *);
 PETSC_INTERN PetscErrorCode AbutSceneRecord_Private(AbutScene, PetscBool *);
 PETSC_INTERN PetscErrorCode AbutSceneRecordTimes_Private(AbutScene);
+PETSC_INTERN PetscErrorCode AbutSceneRecordRatio_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutScenePrintHeader_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutScenePrintCycle_Private(AbutScene, PetscInt);
 PETSC_INTERN PetscErrorCode AbutScenePrintEnd_Private(AbutScene);
@@ -81,6 +84,7 @@ PETSC_INTERN PetscErrorCode AbutScenePrintEnd_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutSceneKeepEdges_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutSceneAdaptBody_Private(AbutScene, AbutBody, const PetscBool[]);
 PETSC_INTERN PetscErrorCode AbutSceneRecordTies_Private(AbutScene);
+PETSC_INTERN PetscErrorCode AbutSceneFollows_Private(AbutScene, PetscBool *);
 /* budget.c */
 PETSC_INTERN PetscErrorCode AbutSceneGetDiscretisation_Private(AbutScene, PetscReal *, PetscReal[]);
 PETSC_INTERN PetscErrorCode AbutSceneRecordBudget_Private(AbutScene);
