@@ -217,7 +217,8 @@ PetscErrorCode AbutBodyNeedSetUp_Private(AbutBody body)
 PetscErrorCode AbutBodyReset_Private(AbutBody body)
 {
   PetscFunctionBegin;
-  body->generation = -1;
+  body->generation  = -1;
+  body->strainknown = PETSC_FALSE;
   PetscCall(KSPReset(body->ksp));
   PetscCall(AbutBodyModesReset_Private(body));
   PetscCall(MatDestroy(&body->A));

@@ -23,6 +23,7 @@ PetscErrorCode AbutBodySpread_Private(AbutBody body)
       *u = t->unknown[k] < 0 ? 0. : ua[2 * t->unknown[k] + d];
       for (PetscInt i = t->anchors[k]; i < t->anchors[k + 1]; ++i) *u += t->weight[i] * ua[2 * t->unknown[t->anchor[i]] + d];
     }
+  body->strainknown = PETSC_FALSE;
   PetscCall(VecRestoreArrayRead(local, &ua));
   PetscCall(VecGhostRestoreLocalForm(body->u, &local));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -169,6 +169,26 @@ PetscErrorCode AbutBodyGetWork(AbutBody body, PetscReal *work)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode AbutBodyComputeStrainEnergy_Private(AbutBody body)
+{
+  const AbutMeshTopology *t;
+  PetscReal               K[4 * ABUT_CELL_NODES_MAX * ABUT_CELL_NODES_MAX], sum = 0.;
+
+  PetscFunctionBegin;
+  PetscCall(AbutMeshGetTopology(body->mesh, &t));
+  for (PetscInt c = 0; c < t->ncells; ++c) {
+    const PetscInt *node = t->cellnode + t->nodes * c, n = 2 * t->nodes;
+
+    PetscCall(AbutCellStiffness_Private(body, c, K));
+    for (PetscInt i = 0; i < n; ++i)
+      for (PetscInt j = 0; j < n; ++j)
+        sum += 0.5 * K[n * i + j] * body->nodeu[2 * node[i / 2] + i % 2] * body->nodeu[2 * node[j / 2] + j % 2];
+  }
+  PetscCallMPI(MPI_Allreduce(&sum, &body->strain, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  body->strainknown = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
    AbutBodyGetEnergy - Strain energy of the last solve, and the work of all forces on its displacements
 
@@ -187,20 +207,9 @@ PetscErrorCode AbutBodyGetWork(AbutBody body, PetscReal *work)
 @*/
 PetscErrorCode AbutBodyGetEnergy(AbutBody body, PetscReal *strain, PetscReal *work)
 {
-  const AbutMeshTopology *t;
-  PetscReal               K[4 * ABUT_CELL_NODES_MAX * ABUT_CELL_NODES_MAX], sum = 0.;
-
   PetscFunctionBegin;
-  PetscCall(AbutMeshGetTopology(body->mesh, &t));
-  for (PetscInt c = 0; c < t->ncells; ++c) {
-    const PetscInt *node = t->cellnode + t->nodes * c, n = 2 * t->nodes;
-
-    PetscCall(AbutCellStiffness_Private(body, c, K));
-    for (PetscInt i = 0; i < n; ++i)
-      for (PetscInt j = 0; j < n; ++j)
-        sum += 0.5 * K[n * i + j] * body->nodeu[2 * node[i / 2] + i % 2] * body->nodeu[2 * node[j / 2] + j % 2];
-  }
-  PetscCallMPI(MPI_Allreduce(&sum, strain, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  if (!body->strainknown) PetscCall(AbutBodyComputeStrainEnergy_Private(body));
+  *strain = body->strain;
   PetscCall(AbutBodyGetWork(body, work));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

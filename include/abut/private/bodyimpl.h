@@ -38,6 +38,8 @@ struct _p_AbutBody {
   Vec           mode[ABUT_MAX_MODES];
   MatNullSpace  free;           /* the modes, NULL if there are none */
   PetscReal    *nodeu;          /* [2*nnodes] displacement at all local nodes, hanging ones too */
+  PetscReal     strain;         /* energy of nodeu, once it has been asked for */
+  PetscBool     strainknown;
   AbutBoundary *boundary;       /* skeleton: contours, nodes, sides; no values */
   PetscInt     *boundaryglobal; /* [nnodes] global numbers of its nodes */
   VecScatter    toboundary;     /* from a vector of unknowns to [2*nnodes] values on every rank */
