@@ -54,7 +54,8 @@ static PetscErrorCode AbutPairReadPressures_Private(AbutPair pair, const PetscRe
    Level: intermediate
 
    Note:
-   For the contact edge see `AbutPairGetEdges()`. The largest pressure is that of `AbutPairRecoverPressure()` on sides of order 2 and higher.
+   For the contact edge see `AbutPairGetEdges()`. The largest pressure is that of `AbutPairRecoverPressure()` on sides of order 2 and
+   higher.
 
 .seealso: `AbutPairComputePressure()`, `AbutPairGetEdges()`, `AbutInterfaceGetPairState()`
 @*/

@@ -159,7 +159,7 @@ PetscErrorCode AbutSceneAdaptBody_Private(AbutScene scene, AbutBody body, const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Does any adapted body follow the edges? */
+/* Is there a body whose mesh moves? */
 PetscErrorCode AbutSceneFollows_Private(AbutScene scene, PetscBool *follows)
 {
   PetscFunctionBegin;

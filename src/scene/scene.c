@@ -24,7 +24,7 @@ PetscErrorCode AbutSceneCreate(MPI_Comm comm, AbutScene *scene)
   if (!ABUTSCENE_CLASSID) PetscCall(PetscClassIdRegister("Abut Scene", &ABUTSCENE_CLASSID));
   PetscCall(PetscHeaderCreate(*scene, ABUTSCENE_CLASSID, "AbutScene", "Bodies in contact", "Scene", comm, AbutSceneDestroy, AbutSceneView));
   (*scene)->eps_u      = 0.0015;
-  (*scene)->loop_share = -1.; /* automatic */
+  (*scene)->loop_share = 0.3;
   (*scene)->consistent = 1e-6;
   (*scene)->verdict    = "not_solved";
   (*scene)->status     = 2;

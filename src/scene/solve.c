@@ -172,15 +172,12 @@ static PetscErrorCode AbutSceneOutput_Private(AbutScene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-#define ABUT_LOOP_SHARE          0.3
-#define ABUT_LOOP_SHARE_FOLLOWED 0.01 /* where the next mesh depends on the edge of the contact, which must be right to a part of a cell */
-
 /* A mesh that is going to be refined need not be solved further than to a part of its own error; the last one is solved to the end. Of
    the first mesh the error is not known yet. */
 static PetscErrorCode AbutSceneLoosen_Private(AbutScene scene, PetscReal *rtol, PetscBool *loose)
 {
-  PetscReal       enough, share = scene->loop_share;
-  PetscBool       active, follows;
+  PetscReal       enough;
+  PetscBool       active;
   const PetscReal expected = 0.1;
 
   PetscFunctionBegin;
@@ -188,9 +185,7 @@ static PetscErrorCode AbutSceneLoosen_Private(AbutScene scene, PetscReal *rtol, 
   if (!scene->snes || !scene->adaptor) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscObjectTypeCompare((PetscObject)scene->snes, SNESDDACTIVE, &active));
   PetscCall(SNESGetTolerances(scene->snes, NULL, rtol, NULL, NULL, NULL));
-  PetscCall(AbutSceneFollows_Private(scene, &follows));
-  if (share < 0.) share = follows ? ABUT_LOOP_SHARE_FOLLOWED : ABUT_LOOP_SHARE;
-  enough = share * (scene->cycle ? scene->discretisation : expected);
+  enough = scene->loop_share * (scene->cycle ? scene->discretisation : expected);
   *loose = (PetscBool)(active && enough > *rtol);
   if (*loose) PetscCall(SNESSetTolerances(scene->snes, 0., enough, 0., PETSC_DEFAULT, PETSC_DEFAULT));
   PetscFunctionReturn(PETSC_SUCCESS);

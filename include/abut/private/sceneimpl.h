@@ -83,8 +83,8 @@ PETSC_INTERN PetscErrorCode AbutScenePrintEnd_Private(AbutScene);
 /* edges.c */
 PETSC_INTERN PetscErrorCode AbutSceneKeepEdges_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutSceneAdaptBody_Private(AbutScene, AbutBody, const PetscBool[]);
-PETSC_INTERN PetscErrorCode AbutSceneRecordTies_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutSceneFollows_Private(AbutScene, PetscBool *);
+PETSC_INTERN PetscErrorCode AbutSceneRecordTies_Private(AbutScene);
 /* budget.c */
 PETSC_INTERN PetscErrorCode AbutSceneGetDiscretisation_Private(AbutScene, PetscReal *, PetscReal[]);
 PETSC_INTERN PetscErrorCode AbutSceneRecordBudget_Private(AbutScene);
