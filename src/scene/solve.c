@@ -185,7 +185,7 @@ static PetscErrorCode AbutSceneLoosen_Private(AbutScene scene, PetscReal *rtol, 
   if (!scene->snes || !scene->adaptor) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscObjectTypeCompare((PetscObject)scene->snes, SNESDDACTIVE, &active));
   PetscCall(SNESGetTolerances(scene->snes, NULL, rtol, NULL, NULL, NULL));
-  enough = scene->loop_share * (scene->cycle ? scene->discretisation : expected);
+  enough = scene->loop_share * (scene->cycle ? PetscMin(1., scene->discretisation) : expected);
   *loose = (PetscBool)(active && enough > *rtol);
   if (*loose) PetscCall(SNESSetTolerances(scene->snes, 0., enough, 0., PETSC_DEFAULT, PETSC_DEFAULT));
   PetscFunctionReturn(PETSC_SUCCESS);

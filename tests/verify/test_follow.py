@@ -4,20 +4,20 @@ import os, tempfile
 
 from abut import LAYERS, read_csv, run
 
-A = 0.9926420758
+A, P, P0 = 0.9926420758, 126.5738901, 166.2024335
 
 
-def follow(*options, adaptor="type: doerfler, target: 0.03", ranks=1):
+def follow(*options, adaptor="type: doerfler, target: 0.03", moves=", follow: true", ranks=1):
     """A run of the scene with exact contact: its cycles, and the x of the nodes of both sides on the last meshes, with the pressures"""
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "scene.yml")
         with open(LAYERS) as old, open(path, "w") as new:
             new.writelines(line for line in old if not line.startswith(("adaptor:", "estimator:", "snes:")))
-            new.write(f"adaptor: {{{adaptor}, follow: true}}\n")
+            new.write(f"adaptor: {{{adaptor}{moves}}}\n")
         files = f"-record_csv {folder}/run.csv -output_profile {folder}/profile.csv"
         r = run(path, "-mid_pair_penalty 0 -upper_mesh_cells 8,2 -upper_mesh_shape quad -estimator_type zz", *options, files, ranks=ranks)
         cycles, profile = read_csv(f"{folder}/run.csv"), read_csv(f"{folder}/profile.csv")
-    assert r["pair.mid.tied"] == cycles[-1]["pair.mid.tied"]
+    assert r.get("pair.mid.tied") == cycles[-1].get("pair.mid.tied")
     pressures = sorted((row["x"], row["pressure"]) for row in profile if row["side"] == "pressure")
     return cycles, [sorted(row["x"] for row in profile if str(row["side"]) == side) for side in ("1", "2")], pressures
 
@@ -41,6 +41,22 @@ def test_the_edge_converges():
     cycles, _, _ = follow(adaptor="type: doerfler, target: 0.01, bulk: 0.7, jump: 2")
     error = [abs(row["pair.mid.contact_edge"] - A) for row in cycles]
     assert error[0] > 0.05 and max(error[-2:]) < 5e-4, error
+
+
+def test_high_orders_follow_by_default_and_gain_by_it():
+    """With a few thousand unknowns, errors of the force that meshes which stay leave behind"""
+    for order, target, unknowns, force, pressure in ((3, 1.2e-3, 2500, 1e-5, 1e-4), (4, 2.5e-4, 4000, 5e-7, 1e-5)):
+        options = f"-lower_mesh_order {order} -upper_mesh_order {order} -estimator_type residual"
+        last = []
+        for moves in ("", ", follow: false"):
+            cycles, _, _ = follow(options, adaptor=f"type: doerfler, target: {target}", moves=moves)
+            last.append(cycles[-1])
+        assert last[0]["pair.mid.tied"] == 2 and "pair.mid.tied" not in last[1], last
+        error = [abs(row["pair.mid.force"] / P - 1) for row in last]
+        assert last[0]["unknowns"] < unknowns and error[0] < force, (order, last[0]["unknowns"], error)
+        assert error[0] < error[1] / 4 and last[0]["unknowns"] < 1.2 * last[1]["unknowns"], (order, error)
+        assert abs(last[0]["pair.mid.pressure_max"] / P0 - 1) < pressure, (order, last[0]["pair.mid.pressure_max"])
+        assert abs(last[0]["pair.mid.contact_edge"] - A) < 0.005 * last[0]["body.lower.hmin"], (order, last[0]["pair.mid.contact_edge"])
 
 
 def test_several_edges_on_one_side():
