@@ -54,6 +54,50 @@ START_TEST(a_cell_maps_to_where_its_inverse_finds_the_point)
 }
 END_TEST
 
+/* Cells add 1, their outward normal times the length, and where the side starts: on every side that has two neighbours the normals cancel */
+START_TEST(what_cells_add_at_their_sides_is_summed)
+{
+  AbutMesh                mesh = CkBox(0., 0., 3., 2., 6, 4, (AbutShape)_i);
+  const AbutMeshTopology *t;
+  PetscReal              *count, *sum;
+  PetscBool              *outer;
+
+  CkRefine(mesh, CkScattered, 3);
+  t = CkTopology(mesh);
+  CkOk(PetscCalloc3(t->nedges, &count, 4 * t->nedges, &sum, t->nedges, &outer));
+  for (PetscInt i = 0; i < t->corners * t->ncells; ++i) {
+    const PetscInt   c = i / t->corners, k = i % t->corners, e = t->celledge[i], parent = t->edgeparent[2 * e];
+    const PetscReal *p = t->x + 2 * t->cell[i], *q = t->x + 2 * t->cell[t->corners * c + (k + 1) % t->corners];
+
+    ck_assert(t->edge[2 * e] == t->cell[i] || t->edge[2 * e + 1] == t->cell[i]);
+    for (PetscInt side = e; side >= 0; side = side == e ? parent : -1) { /* it, and the coarse one above it */
+      const PetscReal *start    = t->x + 2 * t->edge[2 * side];
+      const PetscReal  value[4] = {q[1] - p[1], p[0] - q[0], start[0], start[1]};
+
+      count[side] += 1.;
+      for (PetscInt j = 0; j < 4; ++j) sum[4 * side + j] += value[j];
+    }
+    for (PetscInt j = 0; j < t->nsideedges; ++j)
+      if (t->sidecell[j] == c && t->sideedge[3 * j] == t->cell[i]) outer[e] = PETSC_TRUE;
+  }
+  CkOk(AbutMeshSumAtEdges(mesh, 1, count));
+  CkOk(AbutMeshSumAtEdges(mesh, 4, sum));
+  for (PetscInt i = 0; i < t->corners * t->ncells; ++i) {
+    const PetscInt e = t->celledge[i], above = t->edgeparent[2 * e] >= 0 ? t->edgeparent[2 * e] : e; /* a coarse side has three cells */
+
+    if (outer[e]) ck_assert_double_eq(count[e], 1.);
+    else if (above != e) ck_assert_double_eq(count[above], 3.);
+    else ck_assert(count[e] == 2. || count[e] == 3.);
+    for (PetscInt d = 0; d < 2; ++d) {
+      if (!outer[e]) ck_assert_double_eq_tol(sum[4 * above + d], 0., 1e-13);
+      ck_assert_double_eq_tol(sum[4 * above + 2 + d], count[above] * t->x[2 * t->edge[2 * above] + d], 1e-13);
+    }
+  }
+  CkOk(PetscFree3(count, sum, outer));
+  CkOk(AbutMeshDestroy(&mesh));
+}
+END_TEST
+
 START_TEST(a_point_is_in_the_cells_that_touch_it_and_in_no_other)
 {
   AbutMesh                mesh        = CkBox(0., 0., 3., 2., 3, 2, (AbutShape)_i);
@@ -241,6 +285,7 @@ int main(int argc, char **argv)
   if (AbutInitialize(&argc, &argv, NULL)) return EXIT_FAILURE;
   tcase_set_timeout(tc, 0);
   tcase_add_loop_test(tc, a_cell_maps_to_where_its_inverse_finds_the_point, 0, 2);
+  tcase_add_loop_test(tc, what_cells_add_at_their_sides_is_summed, 0, 2);
   tcase_add_loop_test(tc, a_point_is_in_the_cells_that_touch_it_and_in_no_other, 0, 2);
   tcase_add_loop_test(tc, the_measures_of_a_uniform_mesh_are_those_of_its_right_triangles, 0, 2);
   tcase_add_test(tc, refined_all_along_its_boundary_a_mesh_misses_the_hypothesis_of_lemma_1);
