@@ -72,7 +72,7 @@ PetscErrorCode AbutPairRecoverPressure(AbutPair pair, const PetscReal p[], Petsc
   PetscCall(PetscArraycpy(q, f[pair->which], n));
   for (PetscInt e = 0; order * e + 1 < n; ++e) PetscCall(AbutPairAddMass_Private(pair, e, M));
   AbutPairKeepClosed_Private(order, n, pair->D, p, M, q, out);
-  PetscCall(AbutSolveBand(n, order, M, q));
+  PetscCall(AbutSolveBand(n, order, M, 1, q));
   PetscCall(PetscFree4(M, f[0], f[1], out));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -9,7 +9,8 @@
 +  n    - unknowns
 .  band - diagonals below the main one
 .  A    - [(band+1)*n] lower half by columns: A[(band+1)*j + i-j] for j <= i <= j+band; its factor on output
--  b    - [n] right-hand side, the solution on output
+.  nrhs - right-hand sides
+-  b    - [n*nrhs] right-hand sides one after the other, the solutions on output
 
    Level: developer
 
@@ -18,7 +19,7 @@
 
 .seealso: `AbutPairRecoverPressure()`
 @*/
-PetscErrorCode AbutSolveBand(PetscInt n, PetscInt band, PetscReal A[], PetscReal b[])
+PetscErrorCode AbutSolveBand(PetscInt n, PetscInt band, PetscReal A[], PetscInt nrhs, PetscReal b[])
 {
   const PetscInt ld = band + 1;
 
@@ -32,12 +33,16 @@ PetscErrorCode AbutSolveBand(PetscInt n, PetscInt band, PetscReal A[], PetscReal
     for (PetscInt i = 1; i <= end; ++i) c[i] /= c[0];
     for (PetscInt k = 1; k <= end; ++k)
       for (PetscInt i = k; i <= end; ++i) A[ld * (j + k) + i - k] -= c[i] * c[k];
-    b[j] /= c[0];
-    for (PetscInt i = 1; i <= end; ++i) b[j + i] -= c[i] * b[j];
   }
-  for (PetscInt j = n - 1; j >= 0; --j) {
-    for (PetscInt i = 1; i <= PetscMin(band, n - 1 - j); ++i) b[j] -= A[ld * j + i] * b[j + i];
-    b[j] /= A[ld * j];
+  for (PetscInt m = 0; m < nrhs; ++m, b += n) {
+    for (PetscInt j = 0; j < n; ++j) {
+      b[j] /= A[ld * j];
+      for (PetscInt i = 1; i <= PetscMin(band, n - 1 - j); ++i) b[j + i] -= A[ld * j + i] * b[j];
+    }
+    for (PetscInt j = n - 1; j >= 0; --j) {
+      for (PetscInt i = 1; i <= PetscMin(band, n - 1 - j); ++i) b[j] -= A[ld * j + i] * b[j + i];
+      b[j] /= A[ld * j];
+    }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
