@@ -10,21 +10,23 @@ PetscErrorCode FembemBoundaryCreate(MPI_Comm comm, const AbutBoundary *given, Pe
 {
   PetscFunctionBegin;
   AbutCheckInput(poisson < 0.5, comm, "estimator_type: fembem needs a Poisson's ratio below 0.5, not %g; use zz", (double)poisson);
-  AbutCheckInput(given->order == 1, comm, "estimator_type: fembem is for order 1; give mesh_order 1, or zz");
   b->comm      = comm;
   b->given     = given;
+  b->order     = given->order;
   b->n         = given->n;
+  b->nnodes    = given->nnodes;
   b->young     = young;
   b->mat.mu    = young / (2. * (1. + poisson));
   b->mat.kappa = 3. - 4. * poisson;
   b->next      = given->next;
-  PetscCall(PetscMalloc4(b->n, &b->previous, b->n, &b->z, b->n, &b->u, 2 * b->n, &b->t));
-  for (PetscInt i = 0; i < b->n; ++i) {
-    b->previous[b->next[i]] = i;
-    b->z[i]                 = PointAt(given->x, i);
-    b->u[i]                 = PointAt(given->u, i);
+  PetscCall(FembemBasisSet(b->order, &b->basis));
+  PetscCall(PetscMalloc4(b->n, &b->previous, b->nnodes, &b->z, b->nnodes, &b->u, (b->order + 1) * b->n, &b->t));
+  for (PetscInt i = 0; i < b->n; ++i) b->previous[b->next[i]] = i;
+  for (PetscInt i = 0; i < b->nnodes; ++i) {
+    b->z[i] = PointAt(given->x, i);
+    b->u[i] = PointAt(given->u, i);
   }
-  for (PetscInt i = 0; i < 2 * b->n; ++i) b->t[i] = PointAt(given->traction, i);
+  for (PetscInt i = 0; i < (b->order + 1) * b->n; ++i) b->t[i] = PointAt(given->traction, i);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

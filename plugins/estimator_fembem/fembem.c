@@ -4,8 +4,9 @@
 /*
    The estimator of the paper, eqs. (22)-(27): the stress of the finite elements against that of boundary elements on the trace of their
    mesh, eqs. (25) and (26). The boundary elements see the same data as the last solve of the body, eq. (20): given tractions as the load
-   projected on the boundary elements, contact as nodal forces, supports as displacements.
-   Limits: one homogeneous material, Poisson's ratio below 1/2, no body forces; boundary elements of order 1.
+   projected on the boundary elements, contact as nodal forces, supports as displacements. Boundary elements have the order of the finite
+   elements: of order 1 they would be worse than finite elements of order 2.
+   Limits: one homogeneous material, Poisson's ratio below 1/2, no body forces.
 */
 typedef enum {
   FEMBEM_GALERKIN,
@@ -14,8 +15,8 @@ typedef enum {
 static const char *const FembemSolves[] = {"galerkin", "none", NULL};
 
 typedef struct {
-  PetscInt     solve; /* FembemSolve */
-  PetscReal    tolerance;
+  PetscInt     solve;     /* FembemSolve */
+  PetscReal    tolerance; /* of the treecode; PETSC_DECIDE: by the order */
   PetscInt     max_elements;
   FembemStress stress; /* during an estimate */
 } Fembem;
@@ -29,6 +30,12 @@ static PetscErrorCode FembemCompare(AbutEstimator est, PETSC_UNUSED AbutBody bod
   PetscCall(AbutEstimatorGetData(est, &fembem));
   PetscCall(FembemStressEvaluate(fembem->stress, n, x, s));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the treecode adds to the error is to be well below that of the finite elements, also where these converge faster */
+static PetscReal TreeTolerance(const Fembem *fembem, PetscInt order)
+{
+  return fembem->tolerance == PETSC_DECIDE ? PetscPowRealInt(10., -2 - 2 * order) : fembem->tolerance;
 }
 
 /* The boundary is small beside the body: every rank holds all of it, solves for it, and evaluates the stress in its own cells */
@@ -48,14 +55,15 @@ static PetscErrorCode AbutEstimatorEstimate_Fembem(AbutEstimator est, AbutBody b
   PetscCall(FembemBoundaryCreate(comm, given, young, poisson, &boundary));
   PetscCall(FembemRecoverTractions(&boundary));
   if (fembem->solve == FEMBEM_GALERKIN) {
-    AbutCheckInput(given->n <= fembem->max_elements, comm,
-                   "estimator_fembem_max_elements: %" PetscInt_FMT " boundary elements are more than %" PetscInt_FMT
-                   "; raise it (memory and time grow with the square and the cube), or give -estimator_fembem_solve none",
-                   given->n, fembem->max_elements);
+    AbutCheckInput(given->nnodes <= fembem->max_elements, comm,
+                   "estimator_fembem_max_elements: %" PetscInt_FMT " boundary elements of order %" PetscInt_FMT
+                   " are more than %" PetscInt_FMT
+                   " of order 1; raise it (memory and time grow with the square and the cube), or give -estimator_fembem_solve none",
+                   given->n, given->order, fembem->max_elements);
     PetscCall(FembemSolveGalerkin(&boundary, &unknowns));
   }
   PetscCall(AbutEstimatorSetUnknowns(est, unknowns));
-  PetscCall(FembemStressCreate(&boundary, fembem->tolerance, &fembem->stress));
+  PetscCall(FembemStressCreate(&boundary, TreeTolerance(fembem, given->order), &fembem->stress));
   PetscCall(AbutEstimatorCompareStress(est, body, FembemCompare, eta));
   PetscCall(FembemStressDestroy(&fembem->stress));
   PetscCall(FembemBoundaryDestroy(&boundary));
@@ -65,8 +73,9 @@ static PetscErrorCode AbutEstimatorEstimate_Fembem(AbutEstimator est, AbutBody b
 
 static PetscErrorCode AbutEstimatorSetFromOptions_Fembem(AbutEstimator est, AbutOptionItems PetscOptionsObject)
 {
-  MPI_Comm comm = PetscObjectComm((PetscObject)est);
-  Fembem  *fembem;
+  MPI_Comm  comm = PetscObjectComm((PetscObject)est);
+  Fembem   *fembem;
+  PetscBool given;
 
   PetscFunctionBegin;
   PetscCall(AbutEstimatorGetData(est, &fembem));
@@ -74,10 +83,13 @@ static PetscErrorCode AbutEstimatorSetFromOptions_Fembem(AbutEstimator est, Abut
                             "galerkin: boundary elements solved for; none: displacements and reactions of the finite elements",
                             FembemSolves, &fembem->solve, NULL));
   PetscCall(AbutOptionsReal(PetscOptionsObject, "-estimator_fembem_tree_tolerance",
-                            "relative error of the treecode for stresses; 0 sums directly", &fembem->tolerance, NULL));
+                            "relative error of the treecode for stresses; 0 sums directly, not given: 1e-4 and, for each order above 1, "
+                            "1e-2 of that",
+                            &fembem->tolerance, &given));
   PetscCall(AbutOptionsInt(PetscOptionsObject, "-estimator_fembem_max_elements",
-                           "boundary elements up to which galerkin's dense system is solved", &fembem->max_elements, NULL));
-  AbutCheckInput(fembem->tolerance >= 0. && fembem->tolerance < 0.1, comm,
+                           "boundary elements, of order p each counted p times, up to which galerkin's dense system is solved",
+                           &fembem->max_elements, NULL));
+  AbutCheckInput(!given || (fembem->tolerance >= 0. && fembem->tolerance < 0.1), comm,
                  "estimator_fembem_tree_tolerance: %g is not in [0, 0.1); 1e-4 is ample", (double)fembem->tolerance);
   AbutCheckInput(fembem->max_elements > 0, comm, "estimator_fembem_max_elements: %" PetscInt_FMT " is not positive", fembem->max_elements);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -89,8 +101,12 @@ static PetscErrorCode AbutEstimatorView_Fembem(AbutEstimator est, PetscViewer vi
 
   PetscFunctionBegin;
   PetscCall(AbutEstimatorGetData(est, &fembem));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  boundary elements: solve %s (up to %" PetscInt_FMT "), treecode tolerance %g\n",
-                                   FembemSolves[fembem->solve], fembem->max_elements, (double)fembem->tolerance));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  boundary elements: solve %s (up to %" PetscInt_FMT "), treecode tolerance",
+                                   FembemSolves[fembem->solve], fembem->max_elements));
+  if (fembem->tolerance == PETSC_DECIDE)
+    PetscCall(PetscViewerASCIIPrintf(viewer, " %g at order 1, %g at order 2, ...\n", (double)TreeTolerance(fembem, 1),
+                                     (double)TreeTolerance(fembem, 2)));
+  else PetscCall(PetscViewerASCIIPrintf(viewer, " %g\n", (double)fembem->tolerance));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -115,7 +131,7 @@ static PetscErrorCode AbutEstimatorCreate_Fembem(AbutEstimator est)
   PetscFunctionBegin;
   PetscCall(PetscNew(&fembem));
   fembem->solve        = FEMBEM_GALERKIN;
-  fembem->tolerance    = 1e-4;
+  fembem->tolerance    = PETSC_DECIDE;
   fembem->max_elements = 4000;
   PetscCall(AbutEstimatorSetData(est, fembem));
   PetscCall(AbutEstimatorSetOps(est, &ops));
@@ -129,8 +145,10 @@ static PetscErrorCode AbutEstimatorCreate_Fembem(AbutEstimator est)
 
    Options Database Keys:
 +  -estimator_fembem_solve <galerkin>       - `galerkin` solves the boundary elements' problem; `none` takes u and t of the finite elements
-.  -estimator_fembem_tree_tolerance <1e-4>  - relative error of the treecode that evaluates stresses; 0 sums directly
--  -estimator_fembem_max_elements <4000>    - boundary elements up to which the dense system of `galerkin` is solved
+.  -estimator_fembem_tree_tolerance <real>  - relative error of the treecode that evaluates stresses; 0 sums directly; by default 1e-4 at
+                                              order 1, 1e-6, 1e-8 and 1e-10 at orders 2 to 4
+-  -estimator_fembem_max_elements <4000>    - boundary elements up to which the dense system of `galerkin` is solved; one of order p counts
+                                              p times
 
    Level: developer
 

@@ -6,20 +6,33 @@
 #define FEMBEM_SLACK 1e-9 /* relative: lengths and distances that differ by less are equal */
 
 /*
-   The boundary elements of one body, eq. (25), as complex arrays: displacements linear and continuous round each contour, tractions linear
-   in each element and free to jump between elements. Everything below works on this alone and needs neither mesh nor body.
+   The boundary elements of one body, eq. (25), as complex arrays: displacements of the order of the finite elements, continuous round each
+   contour, tractions of the same order in each element and free to jump between elements; both by their values at the Gauss-Lobatto points
+   of the elements. Everything below works on this alone and needs neither mesh nor body.
 */
 typedef struct {
-  MPI_Comm            comm;     /* whose ranks hold the same boundary, for messages */
-  const AbutBoundary *given;    /* what the finite elements gave; not owned */
-  PetscInt            n;        /* elements, and nodes: element i starts at node i */
-  const PetscInt     *next;     /* [n] the node at the end of element i; not owned */
-  PetscInt           *previous; /* [n] the element that ends at node i */
-  PetscComplex       *z, *u;    /* [n] coordinates and displacement of the nodes */
-  PetscComplex       *t;        /* [2*n] traction at the start and the end of each element */
+  MPI_Comm            comm;  /* whose ranks hold the same boundary, for messages */
+  const AbutBoundary *given; /* what the finite elements gave; not owned */
+  PetscInt            order; /* of the polynomials */
+  FembemBasis         basis;
+  PetscInt            n, nnodes; /* elements, and nodes: order*n */
+  const PetscInt     *next;      /* [n] the element after each one; not owned */
+  PetscInt           *previous;  /* [n] the element before it */
+  PetscComplex       *z, *u;     /* [nnodes] coordinates and displacement of the nodes */
+  PetscComplex       *t;         /* [(order+1)*n] traction at the nodes of each element, from its start to its end */
   PetscReal           young;
   FembemMaterial      mat;
 } FembemBoundary;
+
+static inline PetscComplex FembemStart(const FembemBoundary *b, PetscInt e)
+{
+  return b->z[b->order * e];
+}
+
+static inline PetscReal FembemLength(const FembemBoundary *b, PetscInt e)
+{
+  return PetscAbsComplex(FembemStart(b, b->next[e]) - FembemStart(b, e));
+}
 
 PETSC_INTERN PetscErrorCode FembemBoundaryCreate(MPI_Comm, const AbutBoundary *, PetscReal, PetscReal, FembemBoundary *);
 PETSC_INTERN PetscErrorCode FembemBoundaryDestroy(FembemBoundary *);
@@ -30,16 +43,32 @@ PETSC_INTERN PetscErrorCode FembemRecoverTractions(FembemBoundary *);
 /* Symmetric Galerkin boundary elements: replaces the displacements and tractions that are not given; the number of unknowns solved for */
 PETSC_INTERN PetscErrorCode FembemSolveGalerkin(FembemBoundary *, PetscInt *);
 
-/* The blocks of one outer (tested) and one inner element; rows and columns are 2*end + component, row after row */
+/* What all pairs of elements have in common */
+#define FEMBEM_RULES      5
+#define FEMBEM_POINTS_MAX 24
+typedef struct {
+  PetscReal from; /* smallest distance of the inner element, in lengths of the outer one */
+  PetscInt  n;
+  PetscReal x[FEMBEM_POINTS_MAX], w[FEMBEM_POINTS_MAX]; /* points and weights on [0,1] */
+} FembemRule;
+typedef struct {
+  FembemBasis    basis;
+  FembemMaterial mat;
+  FembemRule     rule[FEMBEM_RULES];
+} FembemPairing;
+PETSC_INTERN PetscErrorCode FembemPairingSet(const FembemBasis *, FembemMaterial, FembemPairing *);
+
+/* The blocks of one outer (tested) and one inner element; rows and columns are 2*node + component, row after row */
+#define FEMBEM_ROWS_MAX (2 * ABUT_SIDE_NODES_MAX)
 typedef struct {
   PetscBool V, W, D; /* which of the three are wanted */
 } FembemWanted;
 typedef struct {
-  PetscReal V[16]; /* <traction, displacement of the inner traction> */
-  PetscReal W[16]; /* <traction, displacement of the inner displacement>, from inside: (1/2 - K) */
-  PetscReal D[16]; /* <displacement, traction of the inner displacement>, integrated by parts: symmetric, >= 0 */
+  PetscReal V[FEMBEM_ROWS_MAX * FEMBEM_ROWS_MAX]; /* <traction, displacement of the inner traction> */
+  PetscReal W[FEMBEM_ROWS_MAX * FEMBEM_ROWS_MAX]; /* <traction, displacement of the inner displacement>, from inside: (1/2 - K) */
+  PetscReal D[FEMBEM_ROWS_MAX * FEMBEM_ROWS_MAX]; /* <displacement, traction of the inner displacement>, by parts: symmetric, >= 0 */
 } FembemBlocks;
-PETSC_INTERN PetscErrorCode FembemPair(const FembemElement *, const FembemElement *, PetscBool, FembemMaterial, FembemWanted,
+PETSC_INTERN PetscErrorCode FembemPair(const FembemPairing *, const FembemElement *, const FembemElement *, PetscBool, FembemWanted,
                                        FembemBlocks *);
 
 /* Stresses inside, by Somigliana's identity from u and t: summed directly, or by a treecode of the given relative tolerance */

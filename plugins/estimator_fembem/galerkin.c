@@ -8,16 +8,18 @@
      [ W^T -D ] [u] = [g]      D = <u, D u> >= 0,
    solved by two Cholesky factorisations: V, then D + W^T V^-1 W. Lengths are scaled by twice the size of the body, which keeps V positive
    (logarithmic capacity below 1), stresses by Young's modulus. Rigid motions that no given displacement prevents are set to zero; they
-   carry no stress. Limits: dense, so n = 4000 elements take about 512 MB and some 10^11 operations.
+   carry no stress. Limits: dense, so 4000 nodes take about 512 MB and some 10^11 operations.
 */
 typedef struct {
   const FembemBoundary *b;
-  FembemElement        *e;      /* [n] scaled */
-  FembemMaterial        mat;    /* scaled */
-  PetscReal            *t, *u;  /* [4*n], [2*n] scaled values */
+  FembemElement        *e; /* [n] scaled */
+  FembemPairing         pairing;
+  PetscReal             scale;  /* of lengths */
+  PetscInt              rows;   /* 2*(order+1), of an element */
+  PetscReal            *t, *u;  /* [rows*n], [2*nnodes] scaled values */
   PetscInt              nt, nu; /* unknowns */
-  PetscInt             *tindex; /* [4*n] number of the unknown, -1 where given */
-  PetscInt             *uindex; /* [2*n] */
+  PetscInt             *tindex; /* [rows*n] number of the unknown, -1 where given */
+  PetscInt             *uindex; /* [2*nnodes] */
   PetscBool            *loaded; /* [n] the element has a given traction that is not zero */
   PetscReal            *V, *W, *D, *f, *g;
 } System;
@@ -32,12 +34,13 @@ static void SystemNumber(System *s)
   for (PetscInt i = 0; i < b->n; ++i) {
     s->loaded[i] = PETSC_FALSE;
     for (PetscInt c = 0; c < 2; ++c) {
-      const PetscBool given = cond[2 * i + c] == ABUT_DISPLACEMENT ? PETSC_TRUE : PETSC_FALSE;
+      const PetscBool given  = (PetscBool)(cond[2 * i + c] == ABUT_DISPLACEMENT);
+      const PetscBool before = (PetscBool)(cond[2 * b->previous[i] + c] == ABUT_DISPLACEMENT);
 
-      s->uindex[2 * i + c] = given || cond[2 * b->previous[i] + c] == ABUT_DISPLACEMENT ? -1 : s->nu++;
-      for (PetscInt end = 0; end < 2; ++end) {
-        s->tindex[4 * i + 2 * end + c] = given ? s->nt++ : -1;
-        if (!given && s->t[4 * i + 2 * end + c] != 0.) s->loaded[i] = PETSC_TRUE;
+      for (PetscInt k = 0; k < b->order; ++k) s->uindex[2 * (b->order * i + k) + c] = given || (!k && before) ? -1 : s->nu++;
+      for (PetscInt k = c; k < s->rows; k += 2) {
+        s->tindex[s->rows * i + k] = given ? s->nt++ : -1;
+        if (!given && s->t[s->rows * i + k] != 0.) s->loaded[i] = PETSC_TRUE;
       }
     }
   }
@@ -47,7 +50,7 @@ static PetscReal BodySize(const FembemBoundary *b)
 {
   PetscReal lo[2] = {PETSC_MAX_REAL, PETSC_MAX_REAL}, hi[2] = {PETSC_MIN_REAL, PETSC_MIN_REAL};
 
-  for (PetscInt i = 0; i < 2 * b->n; ++i) {
+  for (PetscInt i = 0; i < 2 * b->nnodes; ++i) {
     lo[i % 2] = PetscMin(lo[i % 2], b->given->x[i]);
     hi[i % 2] = PetscMax(hi[i % 2], b->given->x[i]);
   }
@@ -56,17 +59,22 @@ static PetscReal BodySize(const FembemBoundary *b)
 
 static PetscErrorCode SystemCreate(const FembemBoundary *b, PetscReal scale, System *s)
 {
+  FembemMaterial mat = b->mat;
+
   PetscFunctionBegin;
-  s->b   = b;
-  s->mat = b->mat;
-  s->mat.mu /= b->young;
-  PetscCall(PetscMalloc6(b->n, &s->e, 4 * b->n, &s->t, 2 * b->n, &s->u, 4 * b->n, &s->tindex, 2 * b->n, &s->uindex, b->n, &s->loaded));
-  for (PetscInt i = 0; i < b->n; ++i) {
-    FembemElementSet(&s->e[i], b->z[i] / scale, b->z[b->next[i]] / scale);
+  mat.mu /= b->young;
+  s->b     = b;
+  s->scale = scale;
+  s->rows  = 2 * (b->order + 1);
+  PetscCall(FembemPairingSet(&b->basis, mat, &s->pairing));
+  PetscCall(PetscMalloc6(b->n, &s->e, s->rows * b->n, &s->t, 2 * b->nnodes, &s->u, s->rows * b->n, &s->tindex, 2 * b->nnodes, &s->uindex,
+                         b->n, &s->loaded));
+  for (PetscInt i = 0; i < b->n; ++i) FembemElementSet(&s->e[i], FembemStart(b, i) / scale, FembemStart(b, b->next[i]) / scale);
+  for (PetscInt i = 0; i < b->nnodes; ++i) {
     s->u[2 * i]     = PetscRealPartComplex(b->u[i]) / scale;
     s->u[2 * i + 1] = PetscImaginaryPartComplex(b->u[i]) / scale;
   }
-  for (PetscInt i = 0; i < 2 * b->n; ++i) {
+  for (PetscInt i = 0; i < (b->order + 1) * b->n; ++i) {
     s->t[2 * i]     = PetscRealPartComplex(b->t[i]) / b->young;
     s->t[2 * i + 1] = PetscImaginaryPartComplex(b->t[i]) / b->young;
   }
@@ -85,47 +93,50 @@ static PetscErrorCode SystemDestroy(System *s)
 }
 
 /* One block of a symmetric operator: unknown rows and columns into the matrix, unknown rows and given columns to the right-hand side */
-static void AddSymmetric(PetscInt n, PetscReal A[], PetscReal rhs[], const PetscInt row[], const PetscInt col[], const PetscReal value[],
-                         PetscReal sign, const PetscReal block[])
+static void AddSymmetric(PetscInt rows, PetscInt n, PetscReal A[], PetscReal rhs[], const PetscInt row[], const PetscInt col[],
+                         const PetscReal value[], PetscReal sign, const PetscReal block[])
 {
-  for (PetscInt k = 0; k < 16; ++k) {
-    const PetscInt r = row[k / 4], c = col[k % 4];
+  for (PetscInt k = 0; k < rows * rows; ++k) {
+    const PetscInt r = row[k / rows], c = col[k % rows];
 
     if (r >= 0 && c >= 0) A[r + (size_t)n * c] += block[k];
-    else if (r >= 0) rhs[r] -= sign * block[k] * value[k % 4];
+    else if (r >= 0) rhs[r] -= sign * block[k] * value[k % rows];
   }
+}
+
+static void Transpose(PetscInt rows, const PetscReal block[], PetscReal transposed[])
+{
+  for (PetscInt k = 0; k < rows * rows; ++k) transposed[k] = block[rows * (k % rows) + k / rows];
 }
 
 /* W has rows of element i (tractions) and columns of element j (displacements); both may be unknown or given */
 static void AddW(System *s, const PetscInt t[], const PetscInt u[], const PetscReal tv[], const PetscReal uv[], const PetscReal W[])
 {
-  for (PetscInt k = 0; k < 16; ++k) {
-    const PetscInt r = t[k / 4], c = u[k % 4];
+  for (PetscInt k = 0; k < s->rows * s->rows; ++k) {
+    const PetscInt r = t[k / s->rows], c = u[k % s->rows];
 
     if (r >= 0 && c >= 0) s->W[r + (size_t)s->nt * c] += W[k];
-    else if (r >= 0) s->f[r] -= W[k] * uv[k % 4];
-    else if (c >= 0) s->g[c] -= W[k] * tv[k / 4];
+    else if (r >= 0) s->f[r] -= W[k] * uv[k % s->rows];
+    else if (c >= 0) s->g[c] -= W[k] * tv[k / s->rows];
   }
 }
 
 /* What is needed of element i as row (of V and W) or as row and column (of D) */
 typedef struct {
-  PetscInt  t[4], u[4];   /* unknowns, -1 where given */
-  PetscReal tv[4], uv[4]; /* values */
+  PetscInt  t[FEMBEM_ROWS_MAX], u[FEMBEM_ROWS_MAX];   /* unknowns, -1 where given */
+  PetscReal tv[FEMBEM_ROWS_MAX], uv[FEMBEM_ROWS_MAX]; /* values */
   PetscBool tfree, ufree, loaded;
 } Local;
 
 static void GetLocal(const System *s, PetscInt i, Local *l)
 {
-  const PetscInt node[2] = {i, s->b->next[i]};
-
   l->tfree = l->ufree = PETSC_FALSE;
   l->loaded           = s->loaded[i];
-  for (PetscInt k = 0; k < 4; ++k) {
-    const PetscInt iu = 2 * node[k / 2] + k % 2;
+  for (PetscInt k = 0; k < s->rows; ++k) {
+    const PetscInt iu = 2 * AbutBoundaryNode(s->b, i, k / 2) + k % 2;
 
-    l->t[k]  = s->tindex[4 * i + k];
-    l->tv[k] = s->t[4 * i + k];
+    l->t[k]  = s->tindex[s->rows * i + k];
+    l->tv[k] = s->t[s->rows * i + k];
     l->u[k]  = s->uindex[iu];
     l->uv[k] = s->u[iu];
     if (l->t[k] >= 0) l->tfree = PETSC_TRUE;
@@ -141,21 +152,21 @@ static PetscErrorCode AddPair(System *s, PetscInt i, const Local *li, PetscInt j
                                .W = li->tfree || (li->loaded && lj->ufree) ? PETSC_TRUE : PETSC_FALSE,
                                .D = !onlyW && (li->ufree || lj->ufree) ? PETSC_TRUE : PETSC_FALSE};
   FembemBlocks       block;
-  PetscReal          transposed[16];
+  PetscReal          transposed[FEMBEM_ROWS_MAX * FEMBEM_ROWS_MAX];
 
   PetscFunctionBegin;
   if (!wanted.V && !wanted.W && !wanted.D) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(FembemPair(&s->e[i], &s->e[j], i == j ? PETSC_TRUE : PETSC_FALSE, s->mat, wanted, &block));
+  PetscCall(FembemPair(&s->pairing, &s->e[i], &s->e[j], (PetscBool)(i == j), wanted, &block));
   if (wanted.W) AddW(s, li->t, lj->u, li->tv, lj->uv, block.W);
   if (wanted.V) {
-    AddSymmetric(s->nt, s->V, s->f, li->t, lj->t, lj->tv, 1., block.V);
-    for (PetscInt k = 0; k < 16; ++k) transposed[k] = block.V[4 * (k % 4) + k / 4];
-    if (i != j) AddSymmetric(s->nt, s->V, s->f, lj->t, li->t, li->tv, 1., transposed);
+    AddSymmetric(s->rows, s->nt, s->V, s->f, li->t, lj->t, lj->tv, 1., block.V);
+    Transpose(s->rows, block.V, transposed);
+    if (i != j) AddSymmetric(s->rows, s->nt, s->V, s->f, lj->t, li->t, li->tv, 1., transposed);
   }
   if (wanted.D) {
-    AddSymmetric(s->nu, s->D, s->g, li->u, lj->u, lj->uv, -1., block.D);
-    for (PetscInt k = 0; k < 16; ++k) transposed[k] = block.D[4 * (k % 4) + k / 4];
-    if (i != j) AddSymmetric(s->nu, s->D, s->g, lj->u, li->u, li->uv, -1., transposed);
+    AddSymmetric(s->rows, s->nu, s->D, s->g, li->u, lj->u, lj->uv, -1., block.D);
+    Transpose(s->rows, block.D, transposed);
+    if (i != j) AddSymmetric(s->rows, s->nu, s->D, s->g, lj->u, li->u, li->uv, -1., transposed);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -171,8 +182,11 @@ static PetscErrorCode SystemAssemble(System *s)
     Local *l = &local[i];
 
     GetLocal(s, i, l);
-    for (PetscInt k = 0; k < 4; ++k)
-      if (l->t[k] >= 0) s->f[l->t[k]] += s->e[i].h / 6. * (2. * l->uv[k] + l->uv[(k + 2) % 4]);
+    for (PetscInt k = 0; k < s->rows * s->rows; ++k) {
+      const PetscInt row = k / s->rows, col = k % s->rows;
+
+      if (l->t[row] >= 0 && row % 2 == col % 2) s->f[l->t[row]] += 0.5 * s->e[i].h * s->b->basis.mass[row / 2][col / 2] * l->uv[col];
+    }
   }
   for (PetscInt i = 0; i < s->b->n; ++i) {
     for (PetscInt j = i; j < s->b->n; ++j) {
@@ -189,8 +203,10 @@ static PetscErrorCode SystemAssemble(System *s)
 /* Value of rigid motion m (two translations, one rotation) in component c at node i */
 static inline PetscReal RigidMotion(const System *s, PetscInt i, PetscInt c, PetscInt m)
 {
+  const PetscComplex arm = (s->b->z[i] - s->b->z[0]) / s->scale;
+
   if (m < 2) return m == c ? 1. : 0.;
-  return c ? PetscRealPartComplex(s->e[i].a - s->e[0].a) : -PetscImaginaryPartComplex(s->e[i].a - s->e[0].a);
+  return c ? PetscRealPartComplex(arm) : -PetscImaginaryPartComplex(arm);
 }
 
 /* The rigid motions that no given displacement of nodes first..end-1 prevents: coefficients [3*k] in v */
@@ -222,12 +238,12 @@ static PetscErrorCode HoldFreeMotions(System *s)
   PetscCall(PetscMalloc1(s->nu, &r));
   for (PetscInt k = 0; k < s->nu; ++k) stiffness += s->D[k + (size_t)s->nu * k] / s->nu;
   for (PetscInt c = 0; c < g->ncontours; ++c) {
-    const PetscInt first = g->contour[c], end = g->contour[c + 1];
+    const PetscInt first = s->b->order * g->contour[c], end = s->b->order * g->contour[c + 1]; /* nodes */
     PetscReal      area = 0.;
 
-    for (PetscInt i = first; i < end; ++i) area += PetscImaginaryPartComplex(PetscConjComplex(s->e[i].a - s->e[first].a) * s->e[i].t);
+    for (PetscInt i = g->contour[c]; i < g->contour[c + 1]; ++i) area += FembemCross(s->e[i].a - s->e[g->contour[c]].a, s->e[i].t);
     /* the rigid motion of a hole alone is felt nowhere; that of the outer contour moves the holes */
-    PetscCall(FindFreeMotions(s, area < 0. ? first : 0, area < 0. ? end : s->b->n, v, &nfree));
+    PetscCall(FindFreeMotions(s, area < 0. ? first : 0, area < 0. ? end : s->b->nnodes, v, &nfree));
     for (PetscInt m = 0; m < nfree; ++m) {
       PetscReal norm2 = 0.;
 
@@ -297,12 +313,12 @@ PetscErrorCode FembemSolveGalerkin(FembemBoundary *b, PetscInt *unknowns)
   PetscCall(SystemCreate(b, scale, &s));
   PetscCall(SystemAssemble(&s));
   PetscCall(SystemSolve(&s));
-  for (PetscInt k = 0; k < 4 * b->n; ++k)
+  for (PetscInt k = 0; k < s.rows * b->n; ++k)
     if (s.tindex[k] >= 0) s.t[k] = s.f[s.tindex[k]];
-  for (PetscInt k = 0; k < 2 * b->n; ++k)
+  for (PetscInt k = 0; k < 2 * b->nnodes; ++k)
     if (s.uindex[k] >= 0) s.u[k] = s.g[s.uindex[k]];
-  for (PetscInt i = 0; i < b->n; ++i) b->u[i] = scale * PetscCMPLX(s.u[2 * i], s.u[2 * i + 1]);
-  for (PetscInt i = 0; i < 2 * b->n; ++i) b->t[i] = b->young * PetscCMPLX(s.t[2 * i], s.t[2 * i + 1]);
+  for (PetscInt i = 0; i < b->nnodes; ++i) b->u[i] = scale * PetscCMPLX(s.u[2 * i], s.u[2 * i + 1]);
+  for (PetscInt i = 0; i < (b->order + 1) * b->n; ++i) b->t[i] = b->young * PetscCMPLX(s.t[2 * i], s.t[2 * i + 1]);
   *unknowns = s.nt + s.nu;
   PetscCall(SystemDestroy(&s));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <abutsys.h>
+#include <abutmesh.h>
 
 /*
    Closed-form integrals of the plane-strain boundary-element kernels over one straight element.
@@ -16,18 +16,29 @@ typedef struct {
   PetscReal    h;       /* length */
 } FembemElement;
 
-/* Integrals over s from a to b with N_a = 1 - s/h, N_b = s/h, w = t(s) - z, dt = (b - a) ds/h */
+/* Integrals over the element of Legendre's polynomials P_n(x), x from -1 to 1, s the length, w = t(s) - z, dt = (b - a) ds/h */
 typedef struct {
-  PetscReal    P0, P1; /* of ln|w| and N_b ln|w| */
-  PetscComplex Q0, Q1; /* of w/conj(w) and N_b w/conj(w) */
-  PetscComplex Ea, Eb; /* of N_a dt/w and N_b dt/w */
+  PetscReal    P[ABUT_SIDE_NODES_MAX]; /* P_n ln|w| ds */
+  PetscComplex Q[ABUT_SIDE_NODES_MAX]; /* P_n w/conj(w) ds */
+  PetscComplex E[ABUT_SIDE_NODES_MAX]; /* P_n dt/w */
 } FembemIntegrals;
+
+typedef PetscReal FembemMatrix[ABUT_SIDE_NODES_MAX][ABUT_SIDE_NODES_MAX];
+
+/* Polynomials on an element: their coefficients in Legendre's polynomials of x, from -1 to 1, by their values at Gauss-Lobatto points */
+typedef struct {
+  PetscInt     order;
+  FembemMatrix coefficient; /* of polynomial n from the value at point k */
+  FembemMatrix derivative;  /* the same of the derivative by x */
+  FembemMatrix mass;        /* integral over x of the functions of points j and k */
+} FembemBasis;
 
 /* An element with its densities p and q of Somigliana's stress identity:
    f Int p dt/w is Muskhelishvili's phi', f Int (q/w - conj(w) p/w^2) dt is S = (s22 - s11)/2 + i s12, f = 1/(2 pi i (1 + kappa)) */
 typedef struct {
   FembemElement e;
-  PetscComplex  pa, dp, p1, qa, dq, q1; /* value at the start, change, change over b - a */
+  PetscInt      order;
+  PetscComplex  p[ABUT_SIDE_NODES_MAX], q[ABUT_SIDE_NODES_MAX]; /* coefficients in Legendre's polynomials */
 } FembemSource;
 
 typedef struct {
@@ -50,8 +61,24 @@ static inline PetscReal FembemDot(PetscComplex a, PetscComplex b)
   return PetscRealPartComplex(a) * PetscRealPartComplex(b) + PetscImaginaryPartComplex(a) * PetscImaginaryPartComplex(b);
 }
 
+/* z on the scale on which the element goes from -1 to 1, from wa = a - z and wb = b - z */
+static inline PetscComplex FembemReference(const FembemElement *e, PetscComplex wa, PetscComplex wb)
+{
+  return -(wa + wb) * e->em / e->h;
+}
+
+/* Twice the area of the triangle of z and the element, from the nearer end: the other one costs digits */
+static inline PetscReal FembemAreaFrom(const FembemElement *e, PetscComplex wa, PetscComplex wb)
+{
+  return FembemCross(FembemAbsSquare(wa) <= FembemAbsSquare(wb) ? wa : wb, e->t);
+}
+
 PETSC_INTERN void FembemElementSet(FembemElement *, PetscComplex, PetscComplex);
-PETSC_INTERN void FembemElementIntegrate(const FembemElement *, PetscComplex, PetscBool, FembemIntegrals *);
-PETSC_INTERN void FembemSourceSet(FembemSource *, PetscComplex, PetscComplex, PetscComplex, PetscComplex, PetscComplex, PetscComplex,
-                                  FembemMaterial);
+PETSC_INTERN void FembemElementIntegrate(const FembemElement *, PetscInt, PetscComplex, PetscBool, FembemIntegrals *);
 PETSC_INTERN void FembemSourceAdd(const FembemSource *, PetscComplex, PetscComplex *, PetscComplex *);
+PETSC_INTERN void FembemSourceSet(FembemSource *, const FembemBasis *, PetscComplex, PetscComplex, const PetscComplex[],
+                                  const PetscComplex[], FembemMaterial);
+
+PETSC_INTERN PetscErrorCode FembemBasisSet(PetscInt, FembemBasis *);
+PETSC_INTERN void           FembemLegendreP(PetscInt, PetscReal, PetscReal[]);
+PETSC_INTERN void           FembemLegendreQ(PetscInt, const FembemElement *, PetscComplex, PetscComplex, PetscBool, PetscComplex[]);

@@ -27,11 +27,11 @@ static RigidMotion FindRigidMotion(const FembemBoundary *b)
   RigidMotion m    = {0., 0., 0.};
   PetscReal   arms = 0., turn = 0.;
 
-  for (PetscInt i = 0; i < b->n; ++i) {
-    m.mean += b->u[i] / b->n;
-    m.center += b->z[i] / b->n;
+  for (PetscInt i = 0; i < b->nnodes; ++i) {
+    m.mean += b->u[i] / b->nnodes;
+    m.center += b->z[i] / b->nnodes;
   }
-  for (PetscInt i = 0; i < b->n; ++i) {
+  for (PetscInt i = 0; i < b->nnodes; ++i) {
     const PetscComplex arm = PetscConjComplex(b->z[i] - m.center);
 
     arms += PetscSqr(PetscAbsComplex(arm));
@@ -53,9 +53,10 @@ PetscErrorCode FembemStressCreate(const FembemBoundary *b, PetscReal tolerance, 
   s->kappa = b->mat.kappa;
   PetscCall(PetscMalloc1(b->n, &s->source));
   for (PetscInt i = 0; i < b->n; ++i) {
-    const PetscInt j = b->next[i];
+    PetscComplex u[ABUT_SIDE_NODES_MAX];
 
-    FembemSourceSet(&s->source[i], b->z[i], b->z[j], Strained(b, &m, i), Strained(b, &m, j), b->t[2 * i], b->t[2 * i + 1], b->mat);
+    for (PetscInt k = 0; k <= b->order; ++k) u[k] = Strained(b, &m, AbutBoundaryNode(b, i, k));
+    FembemSourceSet(&s->source[i], &b->basis, FembemStart(b, i), FembemStart(b, b->next[i]), u, &b->t[(b->order + 1) * i], b->mat);
   }
   if (tolerance > 0. && b->n >= FEMBEM_TREE_FROM) PetscCall(FembemTreeCreate(b->n, s->source, tolerance, &s->tree));
   *stress = s;

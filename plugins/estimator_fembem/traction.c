@@ -4,15 +4,15 @@
 /*
    From nodal forces to tractions, one component at a time. The part of the boundary where that component of the displacement (or contact)
    is prescribed is cut into pieces at corners and where the condition changes; in a piece the traction t is continuous and M t = r, M the
-   boundary mass matrix, r the nodal forces. At a node between two pieces one force r feeds two end values: r/2 + beta goes to the piece
-   before it, r/2 - beta to the one behind it, and the betas minimise the kinks of t in the two elements next to each such end. A closed
-   contour without a corner is cut at its first node, where beta closes it again.
+   boundary mass matrix of the order of the elements, r the nodal forces. At a node between two pieces one force r feeds two end values:
+   r/2 + beta goes to the piece before it, r/2 - beta to the one behind it, and the betas minimise the kinks of t in the two elements next
+   to each such end. A closed contour without a corner is cut at its first node, where beta closes it again.
 */
 typedef struct {
   PetscInt          first, n; /* elements: first, the one after it, ... */
   AbutConditionType type;     /* ABUT_DISPLACEMENT or ABUT_CONTACT */
   PetscInt          share[2]; /* the betas at its start and end, -1 if none */
-  PetscReal        *t;        /* [3*(n+1)] the known part, and what a unit force at the start and at the end adds */
+  PetscReal        *t;        /* [3*(order*n+1)] the known part, and what a unit force at the start and at the end adds */
 } Piece;
 
 typedef struct {
@@ -20,8 +20,8 @@ typedef struct {
   PetscInt        c; /* component */
   PetscInt        npieces, nshares;
   Piece          *piece; /* [n] */
-  PetscInt       *share; /* [n] beta of each node, -1 if none */
-  PetscReal      *value; /* [6*n] room for the t of the pieces */
+  PetscInt       *share; /* [n] beta of the start of each element, -1 if none */
+  PetscReal      *value; /* [3*(order+1)*n] room for the t of the pieces */
 } Recovery;
 
 static inline AbutConditionType ConditionOf(const Recovery *r, PetscInt e)
@@ -29,18 +29,14 @@ static inline AbutConditionType ConditionOf(const Recovery *r, PetscInt e)
   return r->b->given->condition[2 * e + r->c];
 }
 
-static inline PetscReal Length(const FembemBoundary *b, PetscInt e)
-{
-  return PetscAbsComplex(b->z[b->next[e]] - b->z[e]);
-}
-
 /* Does a new piece begin with element e: another condition, a sharp corner, or a less sharp one between two named sides */
 static PetscBool IsCut(const Recovery *r, PetscInt e)
 {
   const FembemBoundary *b      = r->b;
   const PetscInt        p      = b->previous[e];
-  const PetscReal       cosine = PetscRealPartComplex((b->z[e] - b->z[p]) * PetscConjComplex(b->z[b->next[e]] - b->z[e])) /
-                           (Length(b, p) * Length(b, e));
+  const PetscComplex    start  = FembemStart(b, e);
+  const PetscReal       cosine = FembemDot(start - FembemStart(b, p), FembemStart(b, b->next[e]) - start) /
+                           (FembemLength(b, p) * FembemLength(b, e));
 
   if (ConditionOf(r, e) != ConditionOf(r, p)) return PETSC_TRUE;
   return cosine < 0.5 || (cosine < 0.99 && b->given->side[e] != b->given->side[p]) ? PETSC_TRUE : PETSC_FALSE;
@@ -53,20 +49,20 @@ static PetscBool IsShared(const Recovery *r, PetscInt e)
   const PetscInt          p       = r->b->previous[e];
   const AbutConditionType type[2] = {ConditionOf(r, p), ConditionOf(r, e)};
   const PetscInt          contact = type[0] == ABUT_CONTACT ? p : e;
-  const PetscComplex      t       = r->b->z[r->b->next[contact]] - r->b->z[contact];
-  const PetscReal         normal  = (r->c ? PetscRealPartComplex(t) : PetscImaginaryPartComplex(t)) / PetscAbsComplex(t);
+  const PetscComplex      t       = FembemStart(r->b, r->b->next[contact]) - FembemStart(r->b, contact);
+  const PetscReal         normal  = (r->c ? PetscRealPartComplex(t) : PetscImaginaryPartComplex(t)) / FembemLength(r->b, contact);
 
   if (type[0] == ABUT_TRACTION || type[1] == ABUT_TRACTION) return PETSC_FALSE;
   return type[0] == type[1] || PetscAbsReal(normal) > 1e-3 ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* The force at a node that the finite elements balance with the tractions of this piece */
-static PetscReal NodalForce(const Recovery *r, AbutConditionType type, PetscInt node)
+/* The force at node j of element e that the finite elements balance with the tractions of this piece */
+static PetscReal NodalForce(const Recovery *r, AbutConditionType type, PetscInt e, PetscInt j)
 {
   const AbutBoundary *g = r->b->given;
-  const PetscInt      k = 2 * node + r->c;
+  const PetscInt      k = 2 * (r->b->order * e + j) + r->c;
 
-  if (r->share[node] >= 0) return 0.5 * (g->reaction[k] + g->contact[k]);
+  if (!j && r->share[e] >= 0) return 0.5 * (g->reaction[k] + g->contact[k]);
   return type == ABUT_CONTACT ? g->contact[k] : g->reaction[k];
 }
 
@@ -104,35 +100,31 @@ static void FindPieces(Recovery *r)
     p->share[0] = r->share[p->first];
     p->share[1] = r->share[end];
     p->t        = room;
-    room += 3 * (p->n + 1);
+    room += 3 * (r->b->order * p->n + 1);
   }
 }
 
 /* M t = r in one piece, for three right-hand sides */
 static PetscErrorCode SolvePiece(const Recovery *r, Piece *p)
 {
-  const PetscInt m = p->n + 1;
-  PetscInt       e = p->first;
-  PetscReal     *d;
-  PetscScalar   *off;
-  PetscBLASInt   n, three = 3, info;
+  const FembemBoundary *b    = r->b;
+  const PetscInt        band = b->order, m = band * p->n + 1;
+  PetscInt              e = p->first;
+  PetscReal            *M, *t = p->t;
 
   PetscFunctionBegin;
-  PetscCall(PetscBLASIntCast(m, &n));
-  PetscCall(PetscCalloc2(m, &d, m, &off));
-  PetscCall(PetscArrayzero(p->t, 3 * m));
-  p->t[m] = p->t[3 * m - 1] = 1.;
-  for (PetscInt i = 0; i < m; ++i, e = r->b->next[e]) {
-    p->t[i] = NodalForce(r, p->type, e);
-    if (i == p->n) break;
-    off[i] = Length(r->b, e) / 6.;
-    d[i] += 2. * off[i];
-    d[i + 1] += 2. * off[i];
+  PetscCall(PetscCalloc1((band + 1) * m, &M));
+  PetscCall(PetscArrayzero(t, 3 * m));
+  t[m] = t[3 * m - 1] = 1.;
+  for (PetscInt i = 0; i < p->n; ++i, e = b->next[e]) {
+    for (PetscInt j = 0; j <= band; ++j) {
+      if (j < band) t[band * i + j] = NodalForce(r, p->type, e, j);
+      for (PetscInt k = 0; k <= j; ++k) M[(band + 1) * (band * i + k) + j - k] += 0.5 * FembemLength(b, e) * b->basis.mass[j][k];
+    }
   }
-  PetscCallBLAS("LAPACKpttrf", LAPACKpttrf_(&n, d, off, &info));
-  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "Mass matrix of a side: pttrf gives %d", (int)info);
-  PetscCallBLAS("LAPACKpttrs", LAPACKpttrs_(&n, &three, d, off, p->t, &n, &info));
-  PetscCall(PetscFree2(d, off));
+  t[m - 1] = NodalForce(r, p->type, e, 0);
+  PetscCall(AbutSolveBand(m, band, M, 3, t));
+  PetscCall(PetscFree(M));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -141,25 +133,26 @@ static PetscBool IsClosed(const Recovery *r, const Piece *p)
   return p->share[0] >= 0 && p->share[0] == p->share[1] && !IsCut(r, p->first) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* How much the slope of t changes between the first (or last) two elements of a piece, for each of its three parts; of one element, or
-   where the piece closes a contour, how much t itself does */
+/* How much the highest derivative of t, its slope at order 1, changes between the first (or last) two elements of a piece, for each of its
+   three parts. Of one element: how far t is from a lower degree; where the piece closes a contour: how much t itself changes */
 static void Kink(const Recovery *r, const Piece *p, PetscBool atend, PetscReal kink[3])
 {
-  const PetscInt m = p->n + 1, step = atend ? -1 : 1;
+  const FembemBoundary *b     = r->b;
+  const PetscReal      *c     = b->basis.coefficient[b->order];
+  const PetscInt        first = atend ? PetscMax(0, p->n - 2) : 0, m = b->order * p->n + 1; /* of the two elements */
+  PetscReal             h[2] = {1., 1.}, power[2];
+  PetscInt              e    = p->first;
 
+  for (PetscInt i = 0; i < p->n; ++i, e = b->next[e])
+    if (i - first == 0 || i - first == 1) h[i - first] = FembemLength(b, e);
+  for (PetscInt k = 0; k < 2; ++k) power[k] = PetscPowRealInt((h[0] + h[1]) / h[k], b->order);
   for (PetscInt k = 0; k < 3; ++k) {
-    const PetscReal *t = p->t + k * m + (atend ? p->n : 0);
+    const PetscReal *t = p->t + k * m;
 
-    if (p->n == 1 || IsClosed(r, p)) {
-      kink[k] = t[step * p->n] - t[0];
-    } else {
-      PetscInt  e = p->first;
-      PetscReal h[2];
-
-      for (PetscInt i = 1; atend && i < p->n; ++i) e = r->b->next[e];
-      h[0]    = Length(r->b, e);
-      h[1]    = Length(r->b, atend ? r->b->previous[e] : r->b->next[e]);
-      kink[k] = 0.5 * (h[0] + h[1]) * ((t[2 * step] - t[step]) / h[1] - (t[step] - t[0]) / h[0]);
+    kink[k] = IsClosed(r, p) ? t[m - 1] - t[0] : 0.;
+    for (PetscInt j = 0; !IsClosed(r, p) && j <= b->order; ++j) {
+      if (p->n == 1) kink[k] += 2. * c[j] * t[j];
+      else kink[k] += c[j] * (power[1] * t[b->order * (first + 1) + j] - power[0] * t[b->order * first + j]);
     }
   }
 }
@@ -199,13 +192,14 @@ static PetscErrorCode SolveShares(const Recovery *r, PetscReal beta[])
 static void StorePiece(const Recovery *r, const Piece *p, const PetscReal beta[])
 {
   const PetscReal first = p->share[0] >= 0 ? -beta[p->share[0]] : 0., last = p->share[1] >= 0 ? beta[p->share[1]] : 0.;
+  const PetscInt  order = r->b->order, m = order * p->n + 1;
   PetscInt        e = p->first;
 
   for (PetscInt i = 0; i < p->n; ++i, e = r->b->next[e]) {
-    for (PetscInt k = 0; k < 2; ++k) {
-      const PetscReal *t   = p->t + i + k;
-      PetscComplex    *old = &r->b->t[2 * e + k];
-      const PetscReal  v   = t[0] + first * t[p->n + 1] + last * t[2 * (p->n + 1)];
+    for (PetscInt k = 0; k <= order; ++k) {
+      const PetscReal *t   = p->t + order * i + k;
+      PetscComplex    *old = &r->b->t[(order + 1) * e + k];
+      const PetscReal  v   = t[0] + first * t[m] + last * t[2 * m];
 
       *old = r->c ? PetscCMPLX(PetscRealPartComplex(*old), v) : PetscCMPLX(v, PetscImaginaryPartComplex(*old));
     }
@@ -218,7 +212,7 @@ PetscErrorCode FembemRecoverTractions(FembemBoundary *b)
   PetscReal *beta;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc4(b->n, &r.piece, b->n, &r.share, 6 * b->n, &r.value, 2 * b->n, &beta));
+  PetscCall(PetscMalloc4(b->n, &r.piece, b->n, &r.share, 3 * (b->order + 1) * b->n, &r.value, 2 * b->n, &beta));
   for (r.c = 0; r.c < 2; ++r.c) {
     FindPieces(&r);
     for (PetscInt k = 0; k < r.npieces; ++k) PetscCall(SolvePiece(&r, &r.piece[k]));

@@ -24,7 +24,8 @@ struct _n_FembemTree {
   Cluster            *cluster;
   PetscComplex       *moment; /* [4*terms*nclusters] for each k: Mp, Mq, (k+1) Mp, (k+1) N */
   PetscInt            npoints;
-  PetscReal          *point, *weight; /* Gauss on [0,1], exact for the moments */
+  PetscReal          *point, *weight; /* Gauss on [-1,1], exact for the moments */
+  PetscReal          *legendre;       /* [ABUT_SIDE_NODES_MAX*npoints] the polynomials there */
 };
 
 static void ClusterBound(FembemTree tree, Cluster *cl)
@@ -55,10 +56,17 @@ static void ClusterMoments(FembemTree tree, const Cluster *cl, PetscComplex m[])
     const FembemSource *s = &tree->source[i];
 
     for (PetscInt g = 0; g < tree->npoints; ++g) {
-      const PetscReal    x = tree->point[g];
-      const PetscComplex w = s->e.a - cl->c + x * s->e.t, dt = tree->weight[g] * s->e.t, cw = PetscConjComplex(w);
-      PetscComplex       p = (s->pa + x * s->dp) * dt, q = (s->qa + x * s->dq) * dt;
+      const PetscReal   *P = tree->legendre + ABUT_SIDE_NODES_MAX * g;
+      const PetscComplex w = s->e.a - cl->c + (0.5 + 0.5 * tree->point[g]) * s->e.t, dt = 0.5 * tree->weight[g] * s->e.t,
+                         cw = PetscConjComplex(w);
+      PetscComplex p = 0., q = 0.;
 
+      for (PetscInt k = 0; k <= s->order; ++k) {
+        p += P[k] * s->p[k];
+        q += P[k] * s->q[k];
+      }
+      p *= dt;
+      q *= dt;
       for (PetscInt k = 0; k < tree->terms; ++k) {
         m[4 * k] += p;
         m[4 * k + 1] += q;
@@ -104,10 +112,11 @@ PetscErrorCode FembemTreeCreate(PetscInt n, const FembemSource source[], PetscRe
   tree->n       = n;
   tree->source  = source;
   tree->terms   = TermsForTolerance(tolerance);
-  tree->npoints = tree->terms / 2 + 2;
-  PetscCall(PetscMalloc4(room, &tree->cluster, 4 * (size_t)tree->terms * room, &tree->moment, tree->npoints, &tree->point, tree->npoints,
-                         &tree->weight));
-  PetscCall(PetscDTGaussQuadrature(tree->npoints, 0., 1., tree->point, tree->weight));
+  tree->npoints = (tree->terms + source[0].order + 3) / 2;
+  PetscCall(PetscMalloc5(room, &tree->cluster, 4 * (size_t)tree->terms * room, &tree->moment, tree->npoints, &tree->point, tree->npoints,
+                         &tree->weight, ABUT_SIDE_NODES_MAX * tree->npoints, &tree->legendre));
+  PetscCall(PetscDTGaussQuadrature(tree->npoints, -1., 1., tree->point, tree->weight));
+  for (PetscInt g = 0; g < tree->npoints; ++g) FembemLegendreP(source[0].order, tree->point[g], &tree->legendre[ABUT_SIDE_NODES_MAX * g]);
   ClusterBuild(tree, 0, n);
   *newtree = tree;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -154,7 +163,7 @@ PetscErrorCode FembemTreeDestroy(FembemTree *tree)
 {
   PetscFunctionBegin;
   if (!*tree) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree4((*tree)->cluster, (*tree)->moment, (*tree)->point, (*tree)->weight));
+  PetscCall(PetscFree5((*tree)->cluster, (*tree)->moment, (*tree)->point, (*tree)->weight, (*tree)->legendre));
   PetscCall(PetscFree(*tree));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,12 +1,30 @@
 #include <petsctime.h>
-#include "ck.h"
 #include "fembem_boundaries.h"
 #include <petscblaslapack.h>
 
 static const PetscReal lo[2] = {0., 0.}, hi[2] = {2., 1.};
 
+/* Puts 1 for all that is not given */
+static void Forget(FembemBoundary *b)
+{
+  const AbutConditionType *condition = b->given->condition;
+
+  for (PetscInt i = 0; i < b->n; ++i)
+    for (PetscInt c = 0; c < 2; ++c)
+      for (PetscInt k = 0; k <= b->order; ++k) {
+        const PetscBool held   = (PetscBool)(condition[2 * i + c] == ABUT_DISPLACEMENT);
+        const PetscBool before = (PetscBool)(k == 0 && condition[2 * b->previous[i] + c] == ABUT_DISPLACEMENT);
+        PetscComplex   *u = &b->u[AbutBoundaryNode(b, i, k)], *t = &b->t[(b->order + 1) * i + k];
+
+        if (k < b->order && !held && !before)
+          *u = c ? PetscCMPLX(PetscRealPartComplex(*u), 1.) : PetscCMPLX(1., PetscImaginaryPartComplex(*u));
+        if (held) *t = c ? PetscCMPLX(PetscRealPartComplex(*t), 1.) : PetscCMPLX(1., PetscImaginaryPartComplex(*t));
+      }
+}
+
 /* Forgets what is not given, solves, and returns the largest error of the stress at points inside, relative to the largest stress there */
-static PetscReal SolveError(const Field *field, const char text[16], const PetscInt m[4], PetscBool hole, PetscInt *unknowns)
+static PetscReal SolveError(PetscInt order, const Field *field, const char text[16], const PetscInt m[4], PetscBool hole,
+                            PetscInt *unknowns)
 {
   const PetscReal   x[10] = {.2, .2, 1.7, .8, .3, .5, 1.1, .15, 1.6, .3};
   AbutConditionType condition[16];
@@ -16,22 +34,11 @@ static PetscReal SolveError(const Field *field, const char text[16], const Petsc
   PetscReal         s[15], exact[3], error = 0., largest = 0.;
 
   BoundaryConditions(text, condition);
-  CkOk(BoundaryCreateBox(lo, hi, m, hole, &given));
+  CkOk(BoundaryCreateBox(lo, hi, m, hole, order, &given));
   BoundaryFill(field, condition, &given);
   CkOk(FembemBoundaryCreate(PETSC_COMM_SELF, &given, field->young, field->poisson, &b));
   CkOk(FembemRecoverTractions(&b));
-  for (PetscInt i = 0; i < b.n; ++i) {
-    for (PetscInt c = 0; c < 2; ++c) {
-      const PetscBool fixed = given.condition[2 * i + c] == ABUT_DISPLACEMENT || given.condition[2 * b.previous[i] + c] == ABUT_DISPLACEMENT
-                                ? PETSC_TRUE
-                                : PETSC_FALSE;
-
-      if (!fixed) b.u[i] = c ? PetscRealPartComplex(b.u[i]) : PetscCMPLX(0., PetscImaginaryPartComplex(b.u[i]));
-      for (PetscInt k = 0; k < 2; ++k)
-        if (given.condition[2 * i + c] == ABUT_DISPLACEMENT)
-          b.t[2 * i + k] = c ? PetscRealPartComplex(b.t[2 * i + k]) : PetscCMPLX(0., PetscImaginaryPartComplex(b.t[2 * i + k]));
-    }
-  }
+  Forget(&b);
   CkOk(FembemSolveGalerkin(&b, unknowns));
   CkOk(FembemStressCreate(&b, 0., &stress));
   CkOk(FembemStressEvaluate(stress, 5, x, s));
@@ -67,7 +74,7 @@ START_TEST(a_uniform_stress_is_found_under_all_supports)
   PetscReal      error;
 
   memcpy(text, supports[_i], 8);
-  error = SolveError(&field, text, m, PETSC_FALSE, &unknowns);
+  error = SolveError(1, &field, text, m, PETSC_FALSE, &unknowns);
   CkOk(PetscPrintf(PETSC_COMM_WORLD, "uniform stress, %.8s: error %.1e with %" PetscInt_FMT " unknowns\n", text, (double)error, unknowns));
   ck_assert_double_lt(error, 5e-5);
 }
@@ -79,11 +86,33 @@ START_TEST(a_uniform_stress_is_found_round_a_hole)
   const Field              field  = {2.1e5, .3, UniformStress, UniformDisplacement};
   const PetscInt           m[4]   = {8, 5, 7, 4};
   PetscInt                 unknowns;
-  const PetscReal          error = SolveError(&field, text[_i], m, PETSC_TRUE, &unknowns);
+  const PetscReal          error = SolveError(1, &field, text[_i], m, PETSC_TRUE, &unknowns);
 
   CkOk(PetscPrintf(PETSC_COMM_WORLD, "uniform stress, hole, %s: error %.1e with %" PetscInt_FMT " unknowns\n", text[_i], (double)error,
                    unknowns));
   ck_assert_double_lt(error, 5e-5);
+}
+END_TEST
+
+/* Displacements of the elements' degree, at orders 2 to 4 */
+START_TEST(a_polynomial_is_found_under_all_supports)
+{
+  const Field    field = {2.1e5, .3, PolynomialStress, PolynomialDisplacement};
+  const PetscInt m[4]  = {8, 5, 7, 4};
+  PetscInt       unknowns;
+  char           text[17] = "tttttttttttttttt";
+
+  memcpy(text, supports[_i], 8);
+  for (PetscInt order = 2; order <= ABUT_ORDER_MAX; ++order)
+    for (PetscInt hole = 0; hole < 2; ++hole) {
+      PetscReal error;
+
+      polynomial_degree = order;
+      error             = SolveError(order, &field, text, m, (PetscBool)hole, &unknowns);
+      CkOk(PetscPrintf(PETSC_COMM_WORLD, "degree and order %" PetscInt_FMT ", %.8s: error %.1e with %" PetscInt_FMT " unknowns\n", order,
+                       text, (double)error, unknowns));
+      ck_assert_double_lt(error, 5e-8);
+    }
 }
 END_TEST
 
@@ -100,29 +129,33 @@ START_TEST(bending_converges_under_all_supports)
   char      text[17] = "tttttttttttttttt";
 
   memcpy(text, supports[_i], 8);
-  for (PetscInt k = 0; k < 2; ++k) error[k] = SolveError(&field, text, m[k], PETSC_FALSE, &unknowns);
+  for (PetscInt k = 0; k < 2; ++k) error[k] = SolveError(1, &field, text, m[k], PETSC_FALSE, &unknowns);
   CkOk(PetscPrintf(PETSC_COMM_WORLD, "bending, %.8s: error %.1e, %.1e\n", text, (double)error[0], (double)error[1]));
   ck_assert_double_lt(error[1], 0.5 * error[0]);
 }
 END_TEST
 
-/* Full matrices of V on all tractions (4n) and of D on all displacements (2n); lengths scaled so that V is positive */
-static void Matrices(PetscInt n, const FembemBoundary *b, FembemMaterial mat, PetscReal *V, PetscReal *D)
+/* Full matrices of V on all tractions and of D on all displacements; lengths scaled so that V is positive */
+static void Matrices(const FembemBoundary *b, PetscReal *V, PetscReal *D)
 {
-  FembemElement *e;
+  const FembemWanted all  = {PETSC_TRUE, PETSC_TRUE, PETSC_TRUE};
+  const PetscInt     rows = 2 * (b->order + 1), nt = rows * b->n, nu = 2 * b->nnodes;
+  FembemPairing      pairing;
+  FembemElement     *e;
 
-  CkOk(PetscMalloc1(n, &e));
-  for (PetscInt i = 0; i < n; ++i) FembemElementSet(&e[i], b->z[i] / 4., b->z[b->next[i]] / 4.);
-  for (PetscInt i = 0; i < n; ++i) {
-    for (PetscInt j = 0; j < n; ++j) {
-      const FembemWanted all   = {PETSC_TRUE, PETSC_TRUE, PETSC_TRUE};
-      const PetscInt     ni[2] = {i, b->next[i]}, nj[2] = {j, b->next[j]};
-      FembemBlocks       block;
+  CkOk(FembemPairingSet(&b->basis, b->mat, &pairing));
+  CkOk(PetscMalloc1(b->n, &e));
+  for (PetscInt i = 0; i < b->n; ++i) FembemElementSet(&e[i], FembemStart(b, i) / 4., FembemStart(b, b->next[i]) / 4.);
+  for (PetscInt i = 0; i < b->n; ++i) {
+    for (PetscInt j = 0; j < b->n; ++j) {
+      FembemBlocks block;
 
-      CkOk(FembemPair(&e[i], &e[j], i == j ? PETSC_TRUE : PETSC_FALSE, mat, all, &block));
-      for (PetscInt k = 0; k < 16; ++k) {
-        V[4 * i + k / 4 + 4 * n * (4 * j + k % 4)] += block.V[k];
-        D[2 * ni[k / 8] + k / 4 % 2 + 2 * n * (2 * nj[k % 4 / 2] + k % 2)] += block.D[k];
+      CkOk(FembemPair(&pairing, &e[i], &e[j], (PetscBool)(i == j), all, &block));
+      for (PetscInt k = 0; k < rows * rows; ++k) {
+        const PetscInt r = k / rows, c = k % rows;
+
+        V[rows * i + r + nt * (rows * j + c)] += block.V[k];
+        D[2 * AbutBoundaryNode(b, i, r / 2) + r % 2 + nu * (2 * AbutBoundaryNode(b, j, c / 2) + c % 2)] += block.D[k];
       }
     }
   }
@@ -153,26 +186,27 @@ static void Eigenvalues(PetscInt n, PetscReal A[], PetscReal value[])
 
 START_TEST(the_operators_are_symmetric_and_only_rigid_motions_are_free)
 {
-  const PetscInt m[4] = {8, 4, 8, 4}, n = 24;
-  AbutBoundary   given;
-  FembemBoundary b;
-  PetscReal     *V, *D, *value;
+  const PetscInt  m[4] = {8, 4, 8, 4}, nt = 48 * (_i + 1), nu = 48 * _i;
+  const PetscReal error = _i == 1 ? 1e-5 : 1e-8;
+  AbutBoundary    given;
+  FembemBoundary  b;
+  PetscReal      *V, *D, *value;
 
-  CkOk(BoundaryCreateBox(lo, hi, m, PETSC_FALSE, &given));
+  CkOk(BoundaryCreateBox(lo, hi, m, PETSC_FALSE, _i, &given));
   CkOk(FembemBoundaryCreate(PETSC_COMM_SELF, &given, 1., 0.3, &b));
-  CkOk(PetscCalloc3(16 * n * n, &V, 4 * n * n, &D, 4 * n, &value));
-  Matrices(n, &b, b.mat, V, D);
-  CkOk(PetscPrintf(PETSC_COMM_WORLD, "asymmetry of V %.1e, of D %.1e\n", (double)Asymmetry(4 * n, V), (double)Asymmetry(2 * n, D)));
-  ck_assert_double_lt(Asymmetry(4 * n, V), 1e-5);
-  ck_assert_double_lt(Asymmetry(2 * n, D), 1e-5);
-  Eigenvalues(4 * n, V, value);
-  CkOk(PetscPrintf(PETSC_COMM_WORLD, "V from %.1e to %.1e", (double)value[0], (double)value[4 * n - 1]));
-  ck_assert_double_gt(value[0], 1e-5 * value[4 * n - 1]);
-  Eigenvalues(2 * n, D, value);
+  CkOk(PetscCalloc3(nt * nt, &V, nu * nu, &D, nt, &value));
+  Matrices(&b, V, D);
+  CkOk(PetscPrintf(PETSC_COMM_WORLD, "order %d: asymmetry of V %.1e, of D %.1e; ", _i, (double)Asymmetry(nt, V), (double)Asymmetry(nu, D)));
+  ck_assert_double_lt(Asymmetry(nt, V), error);
+  ck_assert_double_lt(Asymmetry(nu, D), error);
+  Eigenvalues(nt, V, value);
+  CkOk(PetscPrintf(PETSC_COMM_WORLD, "V from %.1e to %.1e", (double)value[0], (double)value[nt - 1]));
+  ck_assert_double_gt(value[0], 5e-6 * value[nt - 1]);
+  Eigenvalues(nu, D, value);
   CkOk(PetscPrintf(PETSC_COMM_WORLD, ", D %.1e %.1e %.1e %.1e to %.1e\n", (double)value[0], (double)value[1], (double)value[2],
-                   (double)value[3], (double)value[2 * n - 1]));
-  for (PetscInt i = 0; i < 3; ++i) ck_assert_double_eq_tol(value[i], 0., 1e-5 * value[2 * n - 1]);
-  ck_assert_double_gt(value[3], 1e-3 * value[2 * n - 1]);
+                   (double)value[3], (double)value[nu - 1]));
+  for (PetscInt i = 0; i < 3; ++i) ck_assert_double_eq_tol(value[i], 0., error * value[nu - 1]);
+  ck_assert_double_gt(value[3], 1e-3 * value[nu - 1]);
   CkOk(PetscFree3(V, D, value));
   CkOk(FembemBoundaryDestroy(&b));
   CkOk(BoundaryFree(&given));
@@ -192,10 +226,10 @@ START_TEST(the_time_of_a_solve_is_printed)
 
   for (PetscInt k = 0; k < 2; ++k) {
     CkOk(PetscTime(&time[0]));
-    SolveError(&field, "tutttcuttttttttt", m[k], PETSC_FALSE, &unknowns);
+    SolveError(_i, &field, "tutttcuttttttttt", m[k], PETSC_FALSE, &unknowns);
     CkOk(PetscTime(&time[1]));
-    CkOk(PetscPrintf(PETSC_COMM_WORLD, "%" PetscInt_FMT " boundary elements, %" PetscInt_FMT " unknowns: %.0f ms\n",
-                     2 * (m[k][0] + m[k][1]), unknowns, 1e3 * (time[1] - time[0])));
+    CkOk(PetscPrintf(PETSC_COMM_WORLD, "%" PetscInt_FMT " boundary elements of order %d, %" PetscInt_FMT " unknowns: %.0f ms\n",
+                     2 * (m[k][0] + m[k][1]), _i, unknowns, 1e3 * (time[1] - time[0])));
   }
 }
 END_TEST
@@ -207,11 +241,12 @@ int main(int argc, char **argv)
   int    status;
 
   PetscCall(AbutInitialize(&argc, &argv, NULL));
-  tcase_add_test(tests, the_operators_are_symmetric_and_only_rigid_motions_are_free);
+  tcase_add_loop_test(tests, the_operators_are_symmetric_and_only_rigid_motions_are_free, 1, ABUT_ORDER_MAX + 1);
   tcase_add_loop_test(tests, a_uniform_stress_is_found_under_all_supports, 0, 7);
   tcase_add_loop_test(tests, a_uniform_stress_is_found_round_a_hole, 0, 4);
+  tcase_add_loop_test(tests, a_polynomial_is_found_under_all_supports, 0, 7);
   tcase_add_loop_test(tests, bending_converges_under_all_supports, 0, 7);
-  tcase_add_test(tests, the_time_of_a_solve_is_printed);
+  tcase_add_loop_test(tests, the_time_of_a_solve_is_printed, 1, ABUT_ORDER_MAX + 1);
   suite_add_tcase(suite, tests);
   status = CkRun(suite);
   PetscCall(AbutFinalize());
