@@ -15,14 +15,13 @@ void FembemLegendreP(PetscInt order, PetscReal x, PetscReal P[])
   for (PetscInt n = 1; n < order; ++n) P[n + 1] = ((2. * n + 1.) * x * P[n] - n * P[n - 1]) / (n + 1.);
 }
 
-/* On an ellipse round the element, |wa| + |wb| = s h, its functions Q_n fall with n like rho^-n, rho = s + (s^2 - 1)^(1/2), and its P_n
-   grow like rho^n: the recurrence may go upwards from the logarithm as long as rho is small. Further away it goes downwards (J. C. P.
-   Miller's algorithm; W. Gautschi, SIAM Rev. 9, 1967), started so high that rho^(-2 n) of the start is round-off, and its last step,
-   zeta Q_0 - Q_1 = 1, gives the scale: no digit is lost, near or far. */
 #define FEMBEM_UPWARDS 1.25 /* s up to which; rho = 2 */
 
-/* own: z lies on the element itself and the limit from its left is meant */
-
+/* Q_0..Q_order. Round the element, on the ellipse |wa| + |wb| = s h, they fall with n like rho^-n, rho = s + (s^2 - 1)^(1/2), while the
+   other solution of their recurrence, P_n, grows like rho^n: it may go upwards from the logarithm as long as rho is small. Further away it
+   goes downwards (J. C. P. Miller's algorithm; W. Gautschi, SIAM Rev. 9, 1967), started so high that rho^(-2 n) is round-off there, and its
+   last step, zeta Q_0 - Q_1 = 1, gives the scale: no digit is lost, near or far.
+   own: z lies on the element itself and the limit from its left is meant */
 void FembemLegendreQ(PetscInt order, const FembemElement *e, PetscComplex wa, PetscComplex wb, PetscBool own, PetscComplex Q[])
 {
   const PetscComplex zeta = FembemReference(e, wa, wb);
