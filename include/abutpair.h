@@ -21,6 +21,7 @@ typedef struct _p_AbutPair *AbutPair;
 typedef struct {
   PetscReal force;                      /* integral of p */
   PetscReal pressure_max, pressure_min; /* of the nodal values; of AbutPairRecoverPressure() from order 2 */
+  PetscBool consistent;                 /* they are of AbutPairRecoverPressure() */
   PetscReal contact_length;             /* sum of the nodal lengths D_i over active nodes */
   PetscReal contact_edge;               /* from the closed end of the shared part, else half the contact's width: see AbutPairGetEdges() */
   PetscReal penetration_max;            /* of the averaged nodal penetration */

@@ -27,7 +27,8 @@ static PetscErrorCode AbutPairReadPressures_Private(AbutPair pair, const PetscRe
   PetscCall(PetscMalloc1(n, &consistent));
   if (pair->order[0] > 1) {
     PetscCall(AbutPairRecoverPressure(pair, p, consistent));
-    read = consistent;
+    read              = consistent;
+    state->consistent = PETSC_TRUE;
   }
   for (PetscInt i = 0; i < n; ++i) {
     state->pressure_max = PetscMax(state->pressure_max, read[i]);

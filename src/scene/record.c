@@ -105,21 +105,34 @@ static PetscErrorCode AbutSceneRecordPairs_Private(AbutScene scene, PetscBool *c
   if (!scene->npairs) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < scene->npairs; ++i) {
     const char   *name;
+    char          key[256];
     AbutPairState s;
     PetscReal     theta;
 
     PetscCall(AbutPairGetName(scene->pair[i], &name));
     PetscCall(AbutPairGetTheta(scene->pair[i], &theta));
     PetscCall(AbutInterfaceGetPairState(scene->iface, i, &s));
-    PetscCall(AbutSceneSetReal_Private(scene, "pair", name, "force", s.force));
-    PetscCall(AbutSceneSetReal_Private(scene, "pair", name, "pressure_max", s.pressure_max));
-    PetscCall(AbutSceneSetReal_Private(scene, "pair", name, "contact_length", s.contact_length));
-    PetscCall(AbutSceneSetReal_Private(scene, "pair", name, "contact_edge", s.contact_edge));
-    PetscCall(AbutSceneSetReal_Private(scene, "pair", name, "penetration_max", s.penetration_max));
-    PetscCall(AbutSceneSetReal_Private(scene, "pair", name, "active", s.active));
-    PetscCall(AbutSceneSetReal_Private(scene, "pair", name, "balance", s.balance));
-    PetscCall(AbutSceneSetReal_Private(scene, "pair", name, "complementarity", s.complementarity));
-    PetscCall(AbutSceneSetReal_Private(scene, "pair", name, "theta", theta));
+    {
+      const struct {
+        const char *key;
+        PetscReal   value;
+      } read[] = {
+        {"force",           s.force          },
+        {"pressure_max",    s.pressure_max   },
+        {"contact_length",  s.contact_length },
+        {"contact_edge",    s.contact_edge   },
+        {"penetration_max", s.penetration_max},
+        {"active",          s.active         },
+        {"balance",         s.balance        },
+        {"complementarity", s.complementarity},
+        {"theta",           theta            }
+      };
+
+      for (PetscInt k = 0; k < PETSC_STATIC_ARRAY_LENGTH(read); ++k)
+        PetscCall(AbutSceneSetReal_Private(scene, "pair", name, read[k].key, read[k].value));
+    }
+    PetscCall(PetscSNPrintf(key, sizeof(key), "pair.%s.pressure_reading", name));
+    PetscCall(AbutRecorderSetString(rec, key, s.consistent ? "consistent" : "nodal"));
     penalty += s.energy;
     *consistent = (PetscBool)(*consistent && s.balance <= scene->consistent && s.pressure_min >= 0.);
   }
