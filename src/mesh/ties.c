@@ -3,10 +3,10 @@
 /* Vertices of a side that are held at wanted positions, so that a cell begins where something else does, for example a contact.
 
    The DMPLEX keeps its coordinates, the reference; those of AbutMeshTopology are mapped: along each side of the box by a piecewise linear
-   function, whose displacement reaches through the body, so that rectangles stay rectangles; if the opposite side has ties too, that of each
-   falls off linearly towards the other. No cell is folded: the slopes A and B of the map along x and
-   y are at least 1/2, and where both directions have ties, the displacements are at most a fifth of the box, so that the slopes C and D
-   across obey |C D| <= (2/5)^2 < A B. */
+   function, whose displacement reaches through the body, so that rectangles stay rectangles; if the opposite side has ties too, that of
+   each falls off linearly towards the other. No cell is folded: the slopes A and B of the map along x and y are at least 1/2, and where
+   both directions have ties, the displacements are at most a fifth of the box, so that the slopes C and D across obey
+   |C D| <= (2/5)^2 < A B. */
 
 #define ABUT_TIE_STRETCH 4. /* a displacement dies off within this many times its length, or within a cell of the first mesh */
 #define ABUT_TIE_ACROSS  0.2

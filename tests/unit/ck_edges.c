@@ -1,8 +1,8 @@
 #include "ckbody.h"
 #include <abutpair.h>
 
-/* The edges of a contact, from traces whose penetration is known. The meshes match, so that the averaged penetration of a node is that of the
-   trace at the node, up to order 4. */
+/* The edges of a contact, from traces whose penetration is known. The meshes match, so that the averaged penetration of a node is that of
+   the trace at the node, up to order 4. */
 
 #define LENGTH 4.
 
