@@ -128,7 +128,7 @@ static PetscErrorCode AbutSceneRecordPairs_Private(AbutScene scene, PetscBool *c
         {"theta",           theta            }
       };
 
-      for (PetscInt k = 0; k < PETSC_STATIC_ARRAY_LENGTH(read); ++k)
+      for (PetscInt k = 0; k < (PetscInt)PETSC_STATIC_ARRAY_LENGTH(read); ++k)
         PetscCall(AbutSceneSetReal_Private(scene, "pair", name, read[k].key, read[k].value));
     }
     PetscCall(PetscSNPrintf(key, sizeof(key), "pair.%s.pressure_reading", name));
