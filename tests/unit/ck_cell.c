@@ -54,7 +54,7 @@ START_TEST(a_cell_maps_to_where_its_inverse_finds_the_point)
 }
 END_TEST
 
-/* Cells add 1, their outward normal times the length, and where the side starts: on every side that has two neighbours the normals cancel */
+/* Cells add 1, their outward normal times the length, and where the side starts: where a side has two neighbours the normals cancel */
 START_TEST(what_cells_add_at_their_sides_is_summed)
 {
   AbutMesh                mesh = CkBox(0., 0., 3., 2., 6, 4, (AbutShape)_i);
