@@ -242,7 +242,7 @@ START_TEST(a_mesh_that_cannot_be_is_refused_with_its_key)
     {"-a_mesh_box 0,0,1,1 -a_mesh_cells 0,2",                 "a_mesh_cells:"        },
     {"-a_mesh_box 0,0,1,1 -a_mesh_cells 2,-1",                "a_mesh_cells:"        },
     {"-a_mesh_box 0,0,1,1 -a_mesh_cells 1000000,1000000",     "a_mesh_cells:"        },
-    {"-a_mesh_box 0,0,1,1 -a_mesh_cells 2,2 -a_mesh_order 2", "a_mesh_order:"        },
+    {"-a_mesh_box 0,0,1,1 -a_mesh_cells 2,2 -a_mesh_order 5", "a_mesh_order:"        },
   };
   AbutMesh       mesh;
   PetscErrorCode code;
