@@ -224,7 +224,7 @@ START_TEST(the_time_of_a_solve_is_printed)
   PetscInt       unknowns;
   PetscLogDouble time[2];
 
-  for (PetscInt k = 0; k < 2; ++k) {
+  for (PetscInt k = 0; k < (_i == 1 ? 2 : 1); ++k) {
     CkOk(PetscTime(&time[0]));
     SolveError(_i, &field, "tutttcuttttttttt", m[k], PETSC_FALSE, &unknowns);
     CkOk(PetscTime(&time[1]));

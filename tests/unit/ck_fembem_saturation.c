@@ -1,6 +1,9 @@
 #include "fembem_bodies.h"
+#include <abutestimator.h>
 
 /* estimator_fembem with finite elements of orders 2 to 4: eqs. (23) and (24) of the paper, the boundary elements are better */
+
+PETSC_EXTERN PetscErrorCode PetscDLLibraryRegister_estimator_fembem(void);
 
 static void Print(const char what[], PetscInt order, PetscInt n, PetscBool galerkin, const PetscReal measure[3])
 {
@@ -60,6 +63,35 @@ START_TEST(at_a_square_root_of_the_load_they_are_better_by_a_factor)
 }
 END_TEST
 
+/* 8 elements of order 3 */
+START_TEST(elements_of_high_order_count_as_often_against_the_limit)
+{
+  AbutBody       body = SmoothBody(3, ABUT_QUAD, 2);
+  AbutEstimator  est;
+  Vec            eta;
+  PetscInt       unknowns;
+  PetscErrorCode code;
+
+  CkOk(AbutBodyCreateCellVec(body, &eta));
+  CkOk(PetscOptionsSetValue(NULL, "-estimator_fembem_max_elements", _i ? "24" : "23"));
+  CkOk(AbutEstimatorCreate(PETSC_COMM_WORLD, &est));
+  CkOk(AbutEstimatorSetType(est, ABUTESTIMATORFEMBEM));
+  CkOk(AbutEstimatorSetFromOptions(est));
+  if (_i) {
+    CkOk(AbutEstimatorEstimate(est, body, eta));
+    CkOk(AbutEstimatorGetUnknowns(est, &unknowns));
+    ck_assert_int_eq(unknowns, 2 * (4 * 4 + 11)); /* tractions left and below, displacements right and above */
+  } else {
+    CkCatch(code = AbutEstimatorEstimate(est, body, eta));
+    ck_assert_int_eq(code, PETSC_ERR_USER_INPUT);
+    ck_assert_ptr_nonnull(strstr(ck_line, "estimator_fembem_max_elements: 8 boundary elements of order 3 are more than 23"));
+  }
+  CkOk(AbutEstimatorDestroy(&est));
+  CkOk(VecDestroy(&eta));
+  CkOk(AbutBodyDestroy(&body));
+}
+END_TEST
+
 int main(int argc, char **argv)
 {
   Suite *suite = suite_create("fembem_saturation");
@@ -67,9 +99,11 @@ int main(int argc, char **argv)
   int    status;
 
   PetscCall(AbutInitialize(&argc, &argv, NULL));
+  PetscCall(PetscDLLibraryRegister_estimator_fembem());
   tcase_set_timeout(tests, 120);
   tcase_add_loop_test(tests, on_a_smooth_solution_boundary_elements_are_better_by_half_an_order, 0, 6);
   tcase_add_loop_test(tests, at_a_square_root_of_the_load_they_are_better_by_a_factor, 0, 6);
+  tcase_add_loop_test(tests, elements_of_high_order_count_as_often_against_the_limit, 0, 2);
   suite_add_tcase(suite, tests);
   status = CkRun(suite);
   PetscCall(AbutFinalize());
