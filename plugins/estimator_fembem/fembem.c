@@ -101,12 +101,9 @@ static PetscErrorCode AbutEstimatorView_Fembem(AbutEstimator est, PetscViewer vi
 
   PetscFunctionBegin;
   PetscCall(AbutEstimatorGetData(est, &fembem));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  boundary elements: solve %s (up to %" PetscInt_FMT "), treecode tolerance",
-                                   FembemSolves[fembem->solve], fembem->max_elements));
-  if (fembem->tolerance == PETSC_DECIDE)
-    PetscCall(PetscViewerASCIIPrintf(viewer, " %g at order 1, %g at order 2, ...\n", (double)TreeTolerance(fembem, 1),
-                                     (double)TreeTolerance(fembem, 2)));
-  else PetscCall(PetscViewerASCIIPrintf(viewer, " %g\n", (double)fembem->tolerance));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  boundary elements: solve %s (up to %" PetscInt_FMT "), treecode tolerance %g%s\n",
+                                   FembemSolves[fembem->solve], fembem->max_elements, (double)TreeTolerance(fembem, 1),
+                                   fembem->tolerance == PETSC_DECIDE ? ", for each order above 1 divided by 100" : ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
