@@ -42,6 +42,8 @@ PETSC_EXTERN PetscErrorCode AbutBodyGetMesh(AbutBody, AbutMesh *);
 PETSC_EXTERN PetscErrorCode AbutBodyGetKSP(AbutBody, KSP *);
 PETSC_EXTERN PetscErrorCode AbutBodyIsDirect(AbutBody, PetscBool *);
 PETSC_EXTERN PetscErrorCode AbutBodyGetSize(AbutBody, PetscInt *);
+PETSC_EXTERN PetscErrorCode AbutBodyGetIntegration(AbutBody, const char *[], PetscBool *);
+PETSC_EXTERN PetscErrorCode AbutBodyViewIntegration(AbutBody, PetscViewer);
 PETSC_EXTERN PetscErrorCode AbutBodyGetHeight(AbutBody, const PetscReal[2], PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutBodyCreateVec(AbutBody, Vec *);
 PETSC_EXTERN PetscErrorCode AbutBodyCreateCellVec(AbutBody, Vec *);

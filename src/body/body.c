@@ -37,7 +37,8 @@ static PetscErrorCode AbutBodyInitializePackage_Private(void)
    Level: beginner
 
    Note:
-   Limits: plane strain, linear isotropic material, small displacements, order 1.
+   Limits: plane strain, linear isotropic material, small displacements. Above a Poisson's ratio of 0.49 quads of order 1 take the mean
+   dilatation of each cell, and triangles of order 1 lock; see `AbutBodyGetIntegration()`.
 
 .seealso: `AbutBodySetFromOptions()`, `AbutBodySolve()`, `AbutBodyDestroy()`
 @*/
@@ -290,7 +291,10 @@ PetscErrorCode AbutBodyView(AbutBody body, PetscViewer viewer)
   PetscCall(PetscViewerASCIIPrintf(viewer, "body %s: Young's modulus %g, Poisson's ratio %g, plane strain\n", ((PetscObject)body)->name,
                                    (double)body->young, (double)body->poisson));
   PetscCall(PetscViewerASCIIPushTab(viewer));
-  if (body->generation >= 0) PetscCall(AbutMeshView(body->mesh, viewer));
+  if (body->generation >= 0) {
+    PetscCall(AbutMeshView(body->mesh, viewer));
+    PetscCall(AbutBodyViewIntegration(body, viewer));
+  }
   PetscCall(KSPGetType(body->ksp, &ksptype));
   PetscCall(KSPGetPC(body->ksp, &pc));
   PetscCall(PCGetType(pc, &pctype));

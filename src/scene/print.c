@@ -6,6 +6,8 @@ PetscErrorCode AbutScenePrintHeader_Private(AbutScene scene)
 {
   PetscFunctionBegin;
   PetscCall(AbutSceneViewTolerance_Private(scene, PETSC_VIEWER_STDOUT_(PetscObjectComm((PetscObject)scene))));
+  for (PetscInt b = 0; b < scene->nbodies; ++b)
+    PetscCall(AbutBodyViewIntegration(scene->body[b], PETSC_VIEWER_STDOUT_(PetscObjectComm((PetscObject)scene))));
   PetscCall(PetscPrintf(PetscObjectComm((PetscObject)scene), "%5s %10s %8s %7s %10s %10s %12s %9s\n", "cycle", "unknowns", "cells",
                         "marked", "estimate", "eta_max", "sweeps", "seconds"));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -54,6 +54,8 @@ static PetscErrorCode AbutSceneRecordBodies_Private(AbutScene scene, PetscBool *
     AbutMesh         mesh;
     AbutMeshMeasures m;
     PetscInt         n, cells, solves, its;
+    const char      *integration;
+    char             key[256];
     PetscReal        energy, work, reaction[2], applied[2], residual, uniform = 0., force = 0., floor = 0.;
 
     PetscCall(AbutBodyGetName(scene->body[b], &name));
@@ -77,6 +79,9 @@ static PetscErrorCode AbutSceneRecordBodies_Private(AbutScene scene, PetscBool *
     PetscCall(AbutSceneSetReal_Private(scene, "body", name, "h_ratio", m.ratio));
     PetscCall(AbutSceneSetReal_Private(scene, "body", name, "lemma", m.lemma));
     PetscCall(AbutSceneSetReal_Private(scene, "body", name, "unknowns_uniform", uniform));
+    PetscCall(AbutBodyGetIntegration(scene->body[b], &integration, NULL));
+    PetscCall(PetscSNPrintf(key, sizeof(key), "body.%s.integration", name));
+    PetscCall(AbutRecorderSetString(rec, key, integration));
     unknowns += n;
     done += work;
     strain += energy;
