@@ -63,6 +63,16 @@ static inline void CkHertz(const CkField *field, const PetscReal x[2], PetscReal
   s[2] = y < 0. ? -y * creal(dZ) : 0.;
 }
 
+/* The same on the half-plane y >= 0 */
+static inline void CkHertzAbove(const CkField *field, const PetscReal x[2], PetscReal u[2], PetscReal s[3])
+{
+  const PetscReal below[2] = {x[0], -x[1]};
+
+  CkHertz(field, below, u, s);
+  u[1] = -u[1];
+  s[2] = -s[2];
+}
+
 static inline PetscErrorCode CkDisplacement(const PetscReal x[2], PetscReal *value, void *ctx)
 {
   const CkData *data = (const CkData *)ctx;
@@ -162,45 +172,60 @@ static inline PetscReal CkNodalError(AbutBody body, const CkField *field)
   return most[0] / most[1];
 }
 
-/* Of the field and of its distance from the solution: L2 norm of the displacement, energy norm (sigma:eps), 25 points a cell; relative */
 #define CK_POINTS 7
 
-static inline void CkErrors(AbutBody body, const CkField *field, PetscReal *l2, PetscReal *energy)
+/* Squares over a local cell, CK_POINTS^2 points: of the distance of the solution from the field, of the field; first the L2 norm of the
+   displacement, then the energy norm (sigma:eps) */
+static inline void CkCellErrors(AbutBody body, const CkField *field, PetscInt cell, PetscReal sum[4])
 {
   const AbutMeshTopology *t  = CkTopology(CkMeshOf(body));
   const PetscReal         nu = field->poisson, c = (1. + nu) / field->young;
-  PetscReal               sum[4] = {0., 0., 0., 0.}, z[CK_POINTS], w[CK_POINTS];
+  PetscReal               z[CK_POINTS], w[CK_POINTS];
   const PetscReal        *uh;
 
   CkOk(PetscDTGaussQuadrature(CK_POINTS, 0., 1., z, w));
   CkOk(AbutBodyGetNodeDisplacement(body, &uh));
-  for (PetscInt cell = 0; cell < t->ncells; ++cell)
-    for (PetscInt q = 0; q < CK_POINTS * CK_POINTS; ++q) {
-      const PetscReal a = z[q / CK_POINTS], b = z[q % CK_POINTS], wab = w[q / CK_POINTS] * w[q % CK_POINTS];
-      PetscReal       xi[2] =
-        {
-          2. * a - 1., 2. * b - 1.
-      },
-                x[2], N[ABUT_CELL_NODES_MAX], G[2 * ABUT_CELL_NODES_MAX], det, s[2][3], u[2][2] = {{0., 0.}, {0., 0.}}, weight = 4. * wab;
+  CkOk(PetscArrayzero(sum, 4));
+  for (PetscInt q = 0; q < CK_POINTS * CK_POINTS; ++q) {
+    const PetscReal a = z[q / CK_POINTS], b = z[q % CK_POINTS], wab = w[q / CK_POINTS] * w[q % CK_POINTS];
+    PetscReal       xi[2] =
+      {
+        2. * a - 1., 2. * b - 1.
+    },
+              x[2], N[ABUT_CELL_NODES_MAX], G[2 * ABUT_CELL_NODES_MAX], det, s[2][3], u[2][2] = {{0., 0.}, {0., 0.}}, weight = 4. * wab;
 
-      if (t->corners == 3) { /* a square squeezed to a triangle */
-        xi[0]  = a;
-        xi[1]  = b * (1. - a);
-        weight = wab * (1. - a);
-      }
-      CkOk(AbutMeshMapCell(CkMeshOf(body), cell, xi, x, N, G, &det));
-      CkOk(AbutBodyGetCellStress(body, cell, xi, s[0]));
-      field->at(field, x, u[1], s[1]);
-      for (PetscInt k = 0; k < 2 * t->nodes; ++k) u[0][k % 2] += N[k / 2] * uh[2 * t->cellnode[t->nodes * cell + k / 2] + k % 2];
-      for (PetscInt of = 0; of < 2; ++of) {
-        const PetscReal *e = s[1];
-        PetscReal        d[3];
-
-        for (PetscInt i = 0; i < 3; ++i) d[i] = of ? e[i] : e[i] - s[0][i];
-        for (PetscInt i = 0; i < 2; ++i) sum[of] += weight * det * PetscSqr(u[1][i] - (of ? 0. : u[0][i]));
-        sum[2 + of] += weight * det * c * ((1. - nu) * (d[0] * d[0] + d[1] * d[1]) - 2. * nu * d[0] * d[1] + 2. * d[2] * d[2]);
-      }
+    if (t->corners == 3) { /* a square squeezed to a triangle */
+      xi[0]  = a;
+      xi[1]  = b * (1. - a);
+      weight = wab * (1. - a);
     }
+    CkOk(AbutMeshMapCell(CkMeshOf(body), cell, xi, x, N, G, &det));
+    CkOk(AbutBodyGetCellStress(body, cell, xi, s[0]));
+    field->at(field, x, u[1], s[1]);
+    for (PetscInt k = 0; k < 2 * t->nodes; ++k) u[0][k % 2] += N[k / 2] * uh[2 * t->cellnode[t->nodes * cell + k / 2] + k % 2];
+    for (PetscInt of = 0; of < 2; ++of) {
+      const PetscReal *e = s[1];
+      PetscReal        d[3];
+
+      for (PetscInt i = 0; i < 3; ++i) d[i] = of ? e[i] : e[i] - s[0][i];
+      for (PetscInt i = 0; i < 2; ++i) sum[of] += weight * det * PetscSqr(u[1][i] - (of ? 0. : u[0][i]));
+      sum[2 + of] += weight * det * c * ((1. - nu) * (d[0] * d[0] + d[1] * d[1]) - 2. * nu * d[0] * d[1] + 2. * d[2] * d[2]);
+    }
+  }
+}
+
+/* The same over the body, relative */
+static inline void CkErrors(AbutBody body, const CkField *field, PetscReal *l2, PetscReal *energy)
+{
+  const AbutMeshTopology *t      = CkTopology(CkMeshOf(body));
+  PetscReal               sum[4] = {0., 0., 0., 0.};
+
+  for (PetscInt cell = 0; cell < t->ncells; ++cell) {
+    PetscReal one[4];
+
+    CkCellErrors(body, field, cell, one);
+    for (PetscInt i = 0; i < 4; ++i) sum[i] += one[i];
+  }
   CkOk(MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
   *l2     = PetscSqrtReal(sum[0] / sum[1]);
   *energy = PetscSqrtReal(sum[2] / sum[3]);
