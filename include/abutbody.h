@@ -73,6 +73,7 @@ PETSC_EXTERN PetscErrorCode AbutBodyGetLinearCost(AbutBody, PetscReal, PetscReal
 
 /* Stress (s11, s22, s12) of the last solve in local cell c at a reference point: [-1,1]^2 for quads, (0,0)(1,0)(0,1) for triangles */
 PETSC_EXTERN PetscErrorCode AbutBodyGetCellStress(AbutBody, PetscInt, const PetscReal[2], PetscReal[3]);
+PETSC_EXTERN PetscErrorCode AbutBodyGetCellStresses(AbutBody, PetscInt, PetscInt, const PetscReal[], const PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutBodyGetCellPoint(AbutBody, PetscInt, const PetscReal[2], PetscReal[2], PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutBodyGetPointValues(AbutBody, const PetscReal[2], PetscReal[7]);
 PETSC_EXTERN PetscErrorCode AbutVonMises(const PetscReal[3], PetscReal, PetscReal *);

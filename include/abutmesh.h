@@ -95,10 +95,12 @@ PETSC_EXTERN PetscErrorCode AbutMeshMapCell(AbutMesh, PetscInt, const PetscReal[
 PETSC_EXTERN PetscErrorCode AbutMeshMapPoint(AbutMesh, PetscInt, const PetscReal[2], PetscReal[2], PetscReal[4]);
 PETSC_EXTERN PetscErrorCode AbutMeshEvaluateBasis(AbutMesh, const PetscReal[2], PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutMeshGetReferenceNodes(AbutMesh, const PetscReal *[]);
+PETSC_EXTERN PetscErrorCode AbutMeshCreateQuadrature(AbutMesh, PetscInt, PetscQuadrature *);
 PETSC_EXTERN PetscErrorCode AbutGetLobattoNodes(PetscInt, PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutGetLobattoMassInverse(PetscInt, PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutEvaluateLobatto(PetscInt, PetscReal, PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutMeshSumAtEdges(AbutMesh, PetscInt, PetscReal[]);
+PETSC_EXTERN PetscErrorCode AbutMeshSumAtVertices(AbutMesh, PetscInt, PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutMeshGetOrder(AbutMesh, PetscInt *);
 PETSC_EXTERN PetscErrorCode AbutMeshSetOrder(AbutMesh, PetscInt);
 PETSC_EXTERN PetscErrorCode AbutMeshGetCellArea(AbutMesh, PetscInt, PetscReal *);

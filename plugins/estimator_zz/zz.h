@@ -3,4 +3,4 @@
 #include <abutestimator.h>
 
 PETSC_EXTERN PetscErrorCode PetscDLLibraryRegister_estimator_zz(void);
-PETSC_INTERN PetscErrorCode AbutEstimatorRecover_ZZ(AbutBody, const AbutMeshTopology *, PetscReal[]);
+PETSC_INTERN PetscErrorCode AbutEstimatorRecover_ZZ(AbutBody, PetscReal[]);

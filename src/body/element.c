@@ -5,33 +5,13 @@
    or triangles, whose map is affine: their matrices are sums of four that are integrated once, on the reference cell. */
 
 struct _n_AbutElement {
-  PetscInt   nodes, npoints;
-  PetscReal *xi, *w;  /* [2*npoints], [npoints] quadrature on the reference cell, exact for affine cells */
-  PetscReal *R[2][2]; /* [nodes*nodes] integrals of d_i N_a d_j N_b there */
-  PetscReal *G;       /* [2*nodes] work */
-  PetscReal *mean;    /* [2*nodes] work: integrals of the gradients */
+  PetscInt         nodes, npoints;
+  PetscQuadrature  quadrature; /* on the reference cell, exact for affine cells ... */
+  const PetscReal *xi, *w;     /* [2*npoints], [npoints] ... its arrays */
+  PetscReal       *R[2][2];    /* [nodes*nodes] integrals of d_i N_a d_j N_b there */
+  PetscReal       *G;          /* [2*nodes] work */
+  PetscReal       *mean;       /* [2*nodes] work: integrals of the gradients */
 };
-
-/* Gauss points of a quad, or those of a square folded to a triangle */
-static PetscErrorCode AbutElementQuadrature_Private(PetscInt corners, PetscInt order, AbutElement e)
-{
-  PetscQuadrature  quadrature;
-  const PetscReal *xi, *w;
-  PetscInt         n;
-
-  PetscFunctionBegin;
-  if (corners == 4) PetscCall(PetscDTGaussTensorQuadrature(2, 1, order + 1, -1., 1., &quadrature));
-  else PetscCall(PetscDTStroudConicalQuadrature(2, 1, order, -1., 1., &quadrature));
-  PetscCall(PetscQuadratureGetData(quadrature, NULL, NULL, &n, &xi, &w));
-  PetscCall(PetscMalloc2(2 * n, &e->xi, n, &e->w));
-  for (PetscInt q = 0; q < n; ++q) { /* PETSc's triangle is (-1,-1)(1,-1)(-1,1) */
-    for (PetscInt d = 0; d < 2; ++d) e->xi[2 * q + d] = corners == 4 ? xi[2 * q + d] : 0.5 * (1. + xi[2 * q + d]);
-    e->w[q] = corners == 4 ? w[q] : 0.25 * w[q];
-  }
-  e->npoints = n;
-  PetscCall(PetscQuadratureDestroy(&quadrature));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /* What all cells of a mesh share */
 PetscErrorCode AbutElementCreate_Private(AbutMesh mesh, AbutElement *element)
@@ -45,7 +25,8 @@ PetscErrorCode AbutElementCreate_Private(AbutMesh mesh, AbutElement *element)
   PetscCall(AbutMeshGetTopology(mesh, &t));
   PetscCall(PetscNew(&e));
   e->nodes = n = t->nodes;
-  PetscCall(AbutElementQuadrature_Private(t->corners, t->order, e));
+  PetscCall(AbutMeshCreateQuadrature(mesh, t->corners == 4 ? t->order + 1 : t->order, &e->quadrature));
+  PetscCall(PetscQuadratureGetData(e->quadrature, NULL, NULL, &e->npoints, &e->xi, &e->w));
   PetscCall(PetscCalloc6(n * n, &e->R[0][0], n * n, &e->R[0][1], n * n, &e->R[1][0], n * n, &e->R[1][1], 2 * n, &e->G, 2 * n, &e->mean));
   for (PetscInt q = 0; q < e->npoints; ++q) {
     PetscCall(AbutMeshEvaluateBasis(mesh, e->xi + 2 * q, N, e->G));
@@ -62,7 +43,7 @@ PetscErrorCode AbutElementDestroy_Private(AbutElement *element)
 {
   PetscFunctionBegin;
   if (!*element) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree2((*element)->xi, (*element)->w));
+  PetscCall(PetscQuadratureDestroy(&(*element)->quadrature));
   PetscCall(PetscFree6((*element)->R[0][0], (*element)->R[0][1], (*element)->R[1][0], (*element)->R[1][1], (*element)->G,
                        (*element)->mean));
   PetscCall(PetscFree(*element));

@@ -1,7 +1,59 @@
 #include <abut/private/bodyimpl.h> /*I "abutbody.h" I*/
 
 /*@
-   AbutBodyGetCellStress - The finite-element stress of the last solve at a point of a local cell, eqs. (1), (2) of the paper
+   AbutBodyGetCellStresses - The finite-element stress of the last solve at points of a local cell, eqs. (1), (2) of the paper
+
+   Not Collective
+
+   Input Parameters:
++  body - the body
+.  c    - local cell
+.  n    - points
+.  xi   - [2*n] reference points: [-1,1]^2 for quads, (0,0)(1,0)(0,1) for triangles
+-  dN   - [2*nodes*n] the derivatives of the shape functions there, from `AbutMeshEvaluateBasis()`, the same for all cells
+
+   Output Parameter:
+.  s - [3*n] s11, s22, s12 of each point, stress
+
+   Level: intermediate
+
+.seealso: `AbutBodyGetCellStress()`, `AbutMeshCreateQuadrature()`
+@*/
+PetscErrorCode AbutBodyGetCellStresses(AbutBody body, PetscInt c, PetscInt n, const PetscReal xi[], const PetscReal dN[], PetscReal s[])
+{
+  const AbutMeshTopology *t;
+  PetscReal               u[2 * ABUT_CELL_NODES_MAX], mean = 0.;
+
+  PetscFunctionBegin;
+  PetscCall(AbutMeshGetTopology(body->mesh, &t));
+  for (PetscInt k = 0; k < 2 * t->nodes; ++k) u[k] = body->nodeu[2 * t->cellnode[t->nodes * c + k / 2] + k % 2];
+  if (body->meandilatation) PetscCall(AbutCellDilatation_Private(body, c, &mean));
+  for (PetscInt q = 0; q < n; ++q) {
+    const PetscReal *d    = dN + 2 * t->nodes * q;
+    PetscReal        r[4] = {0., 0., 0., 0.}, g[4], x[2], J[4], det, trace; /* r and g: du_i/dxi_j and du_i/dx_j */
+
+    PetscCall(AbutMeshMapPoint(body->mesh, c, xi + 2 * q, x, J));
+    det = J[0] * J[3] - J[1] * J[2];
+    for (PetscInt k = 0; k < t->nodes; ++k) {
+      r[0] += u[2 * k] * d[2 * k];
+      r[1] += u[2 * k] * d[2 * k + 1];
+      r[2] += u[2 * k + 1] * d[2 * k];
+      r[3] += u[2 * k + 1] * d[2 * k + 1];
+    }
+    for (PetscInt i = 0; i < 4; i += 2) {
+      g[i]     = (r[i] * J[3] - r[i + 1] * J[2]) / det;
+      g[i + 1] = (-r[i] * J[1] + r[i + 1] * J[0]) / det;
+    }
+    trace        = body->lambda * (body->meandilatation ? mean : g[0] + g[3]);
+    s[3 * q]     = trace + 2. * body->mu * g[0];
+    s[3 * q + 1] = trace + 2. * body->mu * g[3];
+    s[3 * q + 2] = body->mu * (g[1] + g[2]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutBodyGetCellStress - The finite-element stress of the last solve at a point of a local cell
 
    Not Collective
 
@@ -15,28 +67,15 @@
 
    Level: intermediate
 
-.seealso: `AbutBodySolve()`, `AbutVonMises()`
+.seealso: `AbutBodySolve()`, `AbutBodyGetCellStresses()`, `AbutVonMises()`
 @*/
 PetscErrorCode AbutBodyGetCellStress(AbutBody body, PetscInt c, const PetscReal xi[2], PetscReal s[3])
 {
-  const AbutMeshTopology *t;
-  PetscReal               x[2], N[ABUT_CELL_NODES_MAX], G[2 * ABUT_CELL_NODES_MAX], det, g[4] = {0., 0., 0., 0.}, trace;
+  PetscReal N[ABUT_CELL_NODES_MAX], dN[2 * ABUT_CELL_NODES_MAX];
 
   PetscFunctionBegin;
-  PetscCall(AbutMeshGetTopology(body->mesh, &t));
-  PetscCall(AbutMeshMapCell(body->mesh, c, xi, x, N, G, &det));
-  for (PetscInt k = 0; k < t->nodes; ++k) {
-    const PetscReal *u = body->nodeu + 2 * t->cellnode[t->nodes * c + k];
-
-    for (PetscInt i = 0; i < 2; ++i)
-      for (PetscInt j = 0; j < 2; ++j) g[2 * i + j] += u[i] * G[2 * k + j];
-  }
-  trace = g[0] + g[3];
-  if (body->meandilatation) PetscCall(AbutCellDilatation_Private(body, c, &trace));
-  trace *= body->lambda;
-  s[0] = trace + 2. * body->mu * g[0];
-  s[1] = trace + 2. * body->mu * g[3];
-  s[2] = body->mu * (g[1] + g[2]);
+  PetscCall(AbutMeshEvaluateBasis(body->mesh, xi, N, dN));
+  PetscCall(AbutBodyGetCellStresses(body, c, 1, xi, dN, s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

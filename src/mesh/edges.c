@@ -67,6 +67,38 @@ void AbutMeshGetEdgeNodes_Private(const AbutMeshTopology *t, PetscInt e, PetscIn
   for (PetscInt i = 1; i < p; ++i) node[forward ? i : p - i] = t->nvertices + (p - 1) * e + i - 1;
 }
 
+/* Sums v[bs*n] over the ranks at the n points of the DMPLEX of one depth */
+static PetscErrorCode AbutMeshSumAtPoints_Private(AbutMesh mesh, PetscInt depth, PetscInt n, PetscInt bs, PetscReal v[])
+{
+  PetscInt     pStart, pEnd, start, nroots;
+  PetscReal   *all;
+  PetscSF      sf;
+  MPI_Datatype block = MPIU_REAL; /* PetscSF does not add a block of one as a number */
+  PetscMPIInt  length;
+
+  PetscFunctionBegin;
+  PetscCall(DMGetPointSF(mesh->dm, &sf));
+  PetscCall(PetscSFGetGraph(sf, &nroots, NULL, NULL, NULL));
+  if (nroots < 0) PetscFunctionReturn(PETSC_SUCCESS); /* one rank */
+  PetscCall(DMPlexGetChart(mesh->dm, &pStart, &pEnd));
+  PetscCall(DMPlexGetDepthStratum(mesh->dm, depth, &start, NULL));
+  PetscCall(PetscMPIIntCast(bs, &length));
+  if (length > 1) {
+    PetscCallMPI(MPI_Type_contiguous(length, MPIU_REAL, &block));
+    PetscCallMPI(MPI_Type_commit(&block));
+  }
+  PetscCall(PetscCalloc1(bs * (pEnd - pStart), &all));
+  PetscCall(PetscArraycpy(all + bs * (start - pStart), v, bs * n));
+  PetscCall(PetscSFReduceBegin(sf, block, all, all, MPI_SUM));
+  PetscCall(PetscSFReduceEnd(sf, block, all, all, MPI_SUM));
+  PetscCall(PetscSFBcastBegin(sf, block, all, all, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(sf, block, all, all, MPI_REPLACE));
+  PetscCall(PetscArraycpy(v, all + bs * (start - pStart), bs * n));
+  PetscCall(PetscFree(all));
+  if (length > 1) PetscCallMPI(MPI_Type_free(&block));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@C
    AbutMeshSumAtEdges - Sums over the ranks what each contributed to the sides of its cells
 
@@ -84,36 +116,37 @@ void AbutMeshGetEdgeNodes_Private(const AbutMeshTopology *t, PetscInt e, PetscIn
    Note:
    A coarse side is known to the ranks of the cells on both sides of it, a hanging one only where the fine cells are.
 
-.seealso: `AbutMeshGetTopology()`, `AbutEstimatorSumAtVertices()`
+.seealso: `AbutMeshGetTopology()`, `AbutMeshSumAtVertices()`
 @*/
 PetscErrorCode AbutMeshSumAtEdges(AbutMesh mesh, PetscInt bs, PetscReal v[])
 {
-  const AbutMeshTopology *t = &mesh->topology;
-  PetscInt                pStart, pEnd, eStart, nroots;
-  PetscReal              *all;
-  PetscSF                 sf;
-  MPI_Datatype            block = MPIU_REAL; /* PetscSF does not add a block of one as a number */
-  PetscMPIInt             n;
-
   PetscFunctionBegin;
-  PetscCall(DMGetPointSF(mesh->dm, &sf));
-  PetscCall(PetscSFGetGraph(sf, &nroots, NULL, NULL, NULL));
-  if (nroots < 0) PetscFunctionReturn(PETSC_SUCCESS); /* one rank */
-  PetscCall(DMPlexGetChart(mesh->dm, &pStart, &pEnd));
-  PetscCall(DMPlexGetDepthStratum(mesh->dm, 1, &eStart, NULL));
-  PetscCall(PetscMPIIntCast(bs, &n));
-  if (n > 1) {
-    PetscCallMPI(MPI_Type_contiguous(n, MPIU_REAL, &block));
-    PetscCallMPI(MPI_Type_commit(&block));
-  }
-  PetscCall(PetscCalloc1(bs * (pEnd - pStart), &all));
-  PetscCall(PetscArraycpy(all + bs * (eStart - pStart), v, bs * t->nedges));
-  PetscCall(PetscSFReduceBegin(sf, block, all, all, MPI_SUM));
-  PetscCall(PetscSFReduceEnd(sf, block, all, all, MPI_SUM));
-  PetscCall(PetscSFBcastBegin(sf, block, all, all, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(sf, block, all, all, MPI_REPLACE));
-  PetscCall(PetscArraycpy(v, all + bs * (eStart - pStart), bs * t->nedges));
-  PetscCall(PetscFree(all));
-  if (n > 1) PetscCallMPI(MPI_Type_free(&block));
+  PetscCall(AbutMeshSumAtPoints_Private(mesh, 1, mesh->topology.nedges, bs, v));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutMeshSumAtVertices - Sums over the ranks what each contributed to the vertices of its cells
+
+   Collective
+
+   Input Parameters:
++  mesh - the mesh, set up
+-  bs   - numbers per vertex
+
+   Input/Output Parameter:
+.  v - [bs*nvertices] for every vertex of `AbutMeshTopology`: in, what this rank contributes; out, the sum over all ranks that know it
+
+   Level: advanced
+
+   Note:
+   The ends of a coarse side are known to the ranks of the cells on both sides of it, a hanging vertex only where the fine cells are.
+
+.seealso: `AbutMeshGetTopology()`, `AbutMeshSumAtEdges()`, `AbutEstimatorSumAtVertices()`
+@*/
+PetscErrorCode AbutMeshSumAtVertices(AbutMesh mesh, PetscInt bs, PetscReal v[])
+{
+  PetscFunctionBegin;
+  PetscCall(AbutMeshSumAtPoints_Private(mesh, 0, mesh->topology.nvertices, bs, v));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

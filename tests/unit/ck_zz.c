@@ -90,7 +90,7 @@ static void AddCell(AbutBody body, const AbutMeshTopology *t, PetscInt c, const 
     CkOk(AbutBodyGetCellStress(body, c, xi, fe));
     ExactStress(x, ex);
     for (PetscInt k = 0; k < t->corners; ++k)
-      for (PetscInt i = 0; i < 3; ++i) rec[i] += N[k] * nodal[3 * t->cell[t->corners * c + k] + i];
+      for (PetscInt i = 0; i < 3; ++i) rec[i] += N[k] * nodal[3 * (t->corners * c + k) + i];
     sum[0] += w * det * Distance2(fe, ex);
     sum[1] += w * det * Distance2(rec, ex);
     sum[2] += w * det * Distance2(rec, fe);
@@ -104,8 +104,8 @@ static void Measure(AbutBody body, PetscReal *error, PetscReal *C, PetscReal *ef
   const AbutMeshTopology *t      = CkTopology(body);
   PetscReal               sum[4] = {0., 0., 0., 0.}, *nodal;
 
-  CkOk(PetscMalloc1(3 * t->nvertices, &nodal));
-  CkOk(AbutEstimatorRecover_ZZ(body, t, nodal));
+  CkOk(PetscMalloc1(3 * t->nodes * t->ncells, &nodal));
+  CkOk(AbutEstimatorRecover_ZZ(body, nodal));
   for (PetscInt c = 0; c < t->ncells; ++c) AddCell(body, t, c, nodal, sum);
   CkOk(MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPIU_REAL, MPI_SUM, PETSC_COMM_WORLD));
   *error       = PetscSqrtReal(sum[0] / sum[3]);
@@ -140,70 +140,115 @@ static void Estimate(AbutBody body, PetscReal *total, PetscReal *largest)
   CkOk(AbutEstimatorDestroy(&est));
 }
 
+/* The spaces of quads of orders 1 to 4, then of triangles of orders 1 to 3 */
+static AbutPatchSpace Space(PetscInt i)
+{
+  AbutPatchSpace space;
+
+  AbutPatchSpaceSetUp_Private(i < 4 ? 4 : 3, i < 4 ? i + 1 : i - 3, &space);
+  return space;
+}
+
+static PetscReal Polynomial(const AbutPatchSpace *space, PetscInt s, const PetscReal x[2])
+{
+  PetscReal value = 0.;
+
+  for (PetscInt i = 0; i < space->terms; ++i)
+    value += (1. + s - 0.3 * i) * PetscPowRealInt(x[0], space->power[i][0]) * PetscPowRealInt(x[1], space->power[i][1]);
+  return value;
+}
+
+/* Samples of these polynomials at n x n points of four cells around the vertex: those on the right half as wide as those on the left */
+static void AddSamples(const AbutPatchSpace *space, PetscReal unit, PetscReal m[])
+{
+  const PetscInt n = space->order + (space->order == 1);
+
+  for (PetscInt i = 0; i < 4 * n * n; ++i) {
+    const PetscReal h[4] = {-1., 0.5, -1., 1.}, x = h[i % 2] * (i / 4 % n + 0.3) / n, y = h[2 + i / 2 % 2] * (i / 4 / n + 0.4) / n;
+    const PetscReal at[2] = {x, y}, d[2] = {unit * x, unit * y};
+    const PetscReal s[3] = {Polynomial(space, 0, at), Polynomial(space, 1, at), Polynomial(space, 2, at)};
+
+    AbutPatchAdd_Private(space, d, s, m);
+  }
+}
+
 START_TEST(a_patch_reproduces_what_its_terms_can)
 {
-  static const PetscReal at[7][2] = {
-    {-1.,  -0.9},
-    {0.8,  -1.1},
-    {1.2,  0.7 },
-    {-0.9, 1.  },
-    {0.1,  0.3 },
-    {0.5,  0.5 },
-    {-0.2, 1.4 }
-  };
-  const PetscReal unit                  = _i % 2 ? 1e-5 : 1e3; /* of length: it must not matter */
-  const PetscInt  terms                 = _i < 2 ? 3 : 4;
-  PetscReal       m[ABUT_PATCH_MOMENTS] = {0.}, coef[ABUT_PATCH_COEFS];
-  PetscBool       plane                 = PETSC_FALSE;
+  const PetscReal      unit  = _i % 2 ? 1e-5 : 1e3; /* of length: it must not matter */
+  const AbutPatchSpace space = Space(_i / 2);
+  PetscReal           *m, *coef, x[2] = {0.2, -0.3}, d[2] = {0.2 * unit, -0.3 * unit}, s[3];
+  PetscBool            plane = PETSC_FALSE;
 
-  for (PetscInt i = 0; i < 7; ++i) {
-    const PetscReal x = at[i][0], y = at[i][1], xy = terms == 4 ? x * y : 0., d[2] = {unit * x, unit * y};
-    const PetscReal s[3] = {1. + 2. * x - y + xy, -3. + y - xy, x + 0.5 * xy};
-
-    AbutPatchAdd_Private(d, s, m);
-  }
-  AbutPatchFit_Private(terms, m, coef, &plane);
+  CkOk(PetscCalloc2(space.moments, &m, space.coefs, &coef));
+  AddSamples(&space, unit, m);
+  AbutPatchFit_Private(&space, m, coef, &plane);
   ck_assert(plane);
-  ck_assert_double_eq_tol(coef[0], 1., 1e-12);
-  ck_assert_double_eq_tol(coef[1] * unit, 2., 1e-12);
-  ck_assert_double_eq_tol(coef[2] * unit, -1., 1e-12);
-  ck_assert_double_eq_tol(coef[3] * unit * unit, terms == 4 ? 1. : 0., 1e-12);
-  ck_assert_double_eq_tol(coef[4], -3., 1e-12);
-  ck_assert_double_eq_tol(coef[8], 0., 1e-12);
+  AbutPatchEvaluate_Private(&space, coef, d, s);
+  for (PetscInt k = 0; k < 3; ++k) {
+    ck_assert_double_eq_tol(s[k], Polynomial(&space, k, x), 1e-9);
+    for (PetscInt i = 0; i < space.terms; ++i)
+      ck_assert_double_eq_tol(coef[space.terms * k + i] * PetscPowRealInt(unit, space.power[i][0] + space.power[i][1]), 1. + k - 0.3 * i,
+                              1e-6);
+  }
+  ck_assert_double_gt(AbutPatchWeight_Private(&space, m, coef), 1e6 / 30.); /* no distance from the samples but round-off */
+  CkOk(PetscFree2(m, coef));
+}
+END_TEST
+
+/* The mean of 5 and 9 at two places is 7, and both are 2 away from it; the weight is one over the root mean square distance, s12 twice */
+START_TEST(a_fit_far_from_its_samples_weighs_little)
+{
+  const AbutPatchSpace space = Space(1);
+  const PetscReal      s[2][3] =
+    {
+      {5., 0., 1.},
+      {9., 0., 3.}
+  },
+                  d[2] = {0., 0.};
+  PetscReal m[200]     = {0.}, coef[3 * ABUT_PATCH_TERMS_MAX];
+  PetscBool plane;
+
+  for (PetscInt i = 0; i < 2; ++i) AbutPatchAdd_Private(&space, d, s[i], m);
+  AbutPatchFit_Private(&space, m, coef, &plane);
+  ck_assert_double_eq_tol(AbutPatchWeight_Private(&space, m, coef), 1. / PetscSqrtReal(4. + 2. * 1.), 1e-12);
 }
 END_TEST
 
 START_TEST(a_poor_patch_leaves_out_what_it_cannot_tell)
 {
-  PetscReal m[ABUT_PATCH_MOMENTS] = {0.}, coef[ABUT_PATCH_COEFS];
-  PetscReal s[3] = {5., 0., 0.}, d[2] = {-1., 0.5};
-  PetscBool plane = PETSC_TRUE;
+  const AbutPatchSpace space  = Space(_i);
+  const PetscInt       n      = space.terms;
+  PetscReal            m[200] = {0.}, coef[3 * ABUT_PATCH_TERMS_MAX];
+  PetscReal            s[3] = {5., 0., 0.}, d[2] = {-1., 0.5};
+  PetscBool            plane = PETSC_TRUE;
 
-  AbutPatchAdd_Private(d, s, m); /* one sample: a constant */
-  AbutPatchFit_Private(4, m, coef, &plane);
+  AbutPatchAdd_Private(&space, d, s, m); /* one sample: a constant */
+  AbutPatchFit_Private(&space, m, coef, &plane);
   ck_assert(!plane);
   ck_assert_double_eq_tol(coef[0], 5., 1e-14);
-  ck_assert_double_eq(coef[1], 0.);
+  for (PetscInt i = 1; i < n; ++i) ck_assert_double_eq(coef[i], 0.);
   d[0] = 1.;
   s[0] = 9.;
-  AbutPatchAdd_Private(d, s, m); /* two samples side by side: linear along them */
-  AbutPatchFit_Private(4, m, coef, &plane);
+  AbutPatchAdd_Private(&space, d, s, m); /* two samples side by side: linear along them */
+  AbutPatchFit_Private(&space, m, coef, &plane);
   ck_assert(!plane);
   ck_assert_double_eq_tol(coef[0], 7., 1e-14);
   ck_assert_double_eq_tol(coef[1], 2., 1e-14);
-  ck_assert_double_eq(coef[2], 0.);
+  for (PetscInt i = 2; i < n; ++i) ck_assert_double_eq(coef[i], 0.);
 }
 END_TEST
 
 START_TEST(a_moved_polynomial_has_the_same_values)
 {
-  const PetscReal a[ABUT_PATCH_COEFS] = {1., 2., 3., 4., -1., 0.5, 0., 2., 0., 0., 1., -1.}, d[2] = {0.3, -0.7}, x = 1.1, y = 0.4;
-  PetscReal       b[ABUT_PATCH_COEFS];
+  const AbutPatchSpace space = Space(_i);
+  const PetscReal      d[2] = {0.3, -0.7}, x[2] = {1.1, 0.4}, there[2] = {x[0] + d[0], x[1] + d[1]};
+  PetscReal            a[3 * ABUT_PATCH_TERMS_MAX], b[3 * ABUT_PATCH_TERMS_MAX], s[2][3];
 
-  AbutPatchShift_Private(a, d, b);
-  for (PetscInt s = 0; s < 12; s += 4)
-    ck_assert_double_eq_tol(a[s] + a[s + 1] * (x + d[0]) + a[s + 2] * (y + d[1]) + a[s + 3] * (x + d[0]) * (y + d[1]),
-                            b[s] + b[s + 1] * x + b[s + 2] * y + b[s + 3] * x * y, 1e-14);
+  for (PetscInt i = 0; i < space.coefs; ++i) a[i] = 1. + 0.5 * (i % 7) - 0.4 * (i % 5);
+  AbutPatchShift_Private(&space, a, d, b);
+  AbutPatchEvaluate_Private(&space, a, there, s[0]);
+  AbutPatchEvaluate_Private(&space, b, x, s[1]);
+  for (PetscInt k = 0; k < 3; ++k) ck_assert_double_eq_tol(s[0][k], s[1][k], 1e-12);
 }
 END_TEST
 
@@ -315,9 +360,10 @@ int main(int argc, char **argv)
   int    status;
 
   PetscCall(AbutInitialize(&argc, &argv, NULL));
-  tcase_add_loop_test(tests, a_patch_reproduces_what_its_terms_can, 0, 4);
-  tcase_add_test(tests, a_poor_patch_leaves_out_what_it_cannot_tell);
-  tcase_add_test(tests, a_moved_polynomial_has_the_same_values);
+  tcase_add_loop_test(tests, a_patch_reproduces_what_its_terms_can, 0, 14);
+  tcase_add_test(tests, a_fit_far_from_its_samples_weighs_little);
+  tcase_add_loop_test(tests, a_poor_patch_leaves_out_what_it_cannot_tell, 0, 7);
+  tcase_add_loop_test(tests, a_moved_polynomial_has_the_same_values, 0, 7);
   tcase_add_loop_test(tests, a_linear_stress_is_recovered_exactly_on_a_uniform_mesh, 0, 2);
   tcase_add_loop_test(tests, a_smooth_stress_is_recovered_an_order_better, 0, 2);
   tcase_add_loop_test(tests, a_locally_refined_mesh_is_judged_as_well, 0, 2);
