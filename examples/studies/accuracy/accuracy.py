@@ -1,0 +1,300 @@
+#!/usr/bin/env python3
+"""What an answer costs: errors of contact force and peak pressure on two layers in exact contact, for every order, estimator, marking, with and
+without following of the contact edge.
+
+  accuracy.py [--abut build/bin/abut] [--out out] [--processes 2] [--quick] [--tables]
+
+Leaves accuracy.csv, one line a mesh, accuracy.md, the tables, and accuracy.png and .svg. Every line is a run of its own that ends with this
+mesh: its CPU seconds are those of the whole process, start-up included. Cases that accuracy.csv already has are not repeated: delete it
+after a change of the program. --tables runs nothing and makes tables of what is there.
+"""
+import argparse, collections, concurrent.futures, csv, json, os, subprocess, sys, tempfile, threading, time
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+TOP = os.path.dirname(os.path.dirname(os.path.dirname(HERE)))
+SCENE = os.path.join(HERE, "layers_exact.yml")
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(HERE)), "layers"))
+from layers import number, profile, record  # noqa: E402
+
+ORDERS = (1, 2, 3, 4)
+ESTIMATORS = ("zz", "residual", "fembem")
+MARKINGS = {
+    "bulk .5": "-adaptor_bulk 0.5",
+    "bulk .7": "-adaptor_bulk 0.7",
+    "bulk .7, jump 2": "-adaptor_bulk 0.7 -adaptor_jump 2",
+    "bulk .7, jump 3": "-adaptor_bulk 0.7 -adaptor_jump 3",
+}
+FOLLOWING = ("yes", "no")
+MOST = {1: 8000, 2: 4500, 3: 3500, 4: 4500}  # unknowns of one body, by order: far enough beyond the limits to see whether a target stays met
+LAYERS = {"equal": "", "steel on aluminium": "-lower_material_young 7e4 -lower_material_poisson 0.33"}
+STARTS = {"8,2 on 8,2": "", "8,2 on 6,2": "-lower_mesh_cells 6,2"}
+SCENE_CLOSURE, SCENE_START = 1.366, "8,2 on 8,2"
+OTHERS = [("equal", closure, SCENE_START) for closure in (1.0, 1.2, 1.6, 2.2)]
+OTHERS += [("steel on aluminium", SCENE_CLOSURE, SCENE_START), ("equal", SCENE_CLOSURE, "8,2 on 6,2")]
+TARGETS = ((1e-3, 2e-3), (1e-4, 1e-3), (1e-5, 1e-4), (1e-7, 1e-5), (1e-8, 5e-6))  # of P and p0
+LIMITS = {(1, 1): 9500, (2, 1): 900, (2, 2): 2100, (3, 2): 1700, (4, 3): 3800, (4, 4): 6200}  # unknowns by order and target
+ALLOWED = {"closure": 1.15, "other": 1.5}  # times these where the closure, or materials and first meshes are others
+COLUMNS = "layers closure start order estimator marking follow cycle verdict unknowns cells sweeps P p0 p0_nodal edge pressure_error estimate cpu".split()
+Case = collections.namedtuple("Case", "layers closure start order estimator marking follow")
+
+
+def options(case):
+    text = f"-lower_mesh_order {case.order} -upper_mesh_order {case.order} -upper_bc_top_u2 {-1e-3 * case.closure!r}"
+    text += f" -estimator_type {case.estimator} {MARKINGS[case.marking]} -adaptor_max_unknowns {MOST[case.order]} -adaptor_follow {case.follow}"
+    return [*text.split(), *LAYERS[case.layers].split(), *STARTS[case.start].split()]
+
+
+def reference(case):
+    for one in REFERENCE["cases"]:
+        if (one["materials"], one["closure"]) == (case.layers, case.closure):
+            return one
+    raise SystemExit(f"reference.json has no {case.layers} with closure {case.closure}")
+
+
+with open(os.path.join(HERE, "reference.json")) as _file:
+    REFERENCE = json.load(_file)
+
+
+def pressure_error(one, order, nodes, pressures):
+    """Of the nodal pressures, in the norm of L2 and relative; between the nodes polynomials of the order of the displacements"""
+    import numpy as np
+
+    nodes, pressures, (points, weights) = np.array(nodes), np.array(pressures), np.polynomial.legendre.leggauss(24)
+    error = norm = 0.0
+    for first in range(0, len(nodes) - 1, order):
+        x, p = nodes[first : first + order + 1], pressures[first : first + order + 1]
+        cuts = [x[0], one["a"], x[-1]] if x[0] < one["a"] < x[-1] else [x[0], x[-1]]
+        for low, high in zip(cuts, cuts[1:]):
+            s = (points + 1) / 2
+            at, w = (high - (high - low) * s**2, (high - low) * s * weights)  # crowded at the edge of the contact, where p is like a root
+            angle = np.arccos(np.minimum(at / one["a"], 1))
+            exact = sum(c * np.sin((2 * k + 1) * angle) for k, c in enumerate(one["chebyshev"]))
+            mine = sum(p[i] * np.prod([(at - x[j]) / (x[i] - x[j]) for j in range(order + 1) if j != i], axis=0) for i in range(order + 1))
+            error, norm = error + w @ (mine - exact) ** 2, norm + w @ exact**2
+    return float((error / norm) ** 0.5)
+
+
+def cpu_of(command):
+    """Exit status, last line of what it said, and CPU seconds of a command, with all that it starts"""
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:  # also where MPI keeps its session
+        with open(os.path.join(folder, "said"), "w+") as said:
+            process = subprocess.Popen(command, stdout=said, stderr=said, env={**os.environ, "TMPDIR": folder, "OMP_NUM_THREADS": "1"})
+            _, status, used = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
+            said.seek(0)
+            lines = said.read().split("\n")
+    return process.returncode, next((line for line in reversed(lines) if line.strip()), ""), used.ru_utime + used.ru_stime
+
+
+def load():
+    """CPU seconds of a fixed piece of work, by which those of other days and machines can be compared: the least of five"""
+    seconds = []
+    for _ in range(5):
+        start, total = time.process_time(), 0
+        for i in range(3_000_000):
+            total += i * i % 7
+        seconds.append(time.process_time() - start)
+    return min(seconds)
+
+
+class Study:
+    def __init__(self, args):
+        self.args, self.lock, self.cases = args, threading.Lock(), {}
+        self.path = os.path.join(args.out, "accuracy.csv")
+        if os.path.exists(self.path):
+            with open(self.path) as f:
+                for row in csv.DictReader(f):
+                    row = {key: number(value) if key not in Case._fields or key in ("closure", "order") else value for key, value in row.items()}
+                    row["order"] = int(row["order"])
+                    self.cases.setdefault(Case(*(row[key] for key in Case._fields)), []).append(row)
+
+    def meshes(self, case):
+        """One line a mesh; of a case that failed one line of mesh 0, which says why"""
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "run.csv")
+            command = [self.args.abut, SCENE, *options(case)]
+            status, said, cpu = cpu_of([*command, "-record_csv", path])
+            if status not in (0, 3) or not os.path.exists(path):  # 3: a limit was reached, which the verdict names
+                yield dict(case._asdict(), cycle=0, verdict=said, cpu=cpu)
+                return
+            with open(path) as f:
+                series = [{key: number(value) for key, value in row.items()} for row in csv.DictReader(f)]
+            for row in series:
+                yield self.mesh(case, command, row, folder)
+
+    def mesh(self, case, command, row, folder):
+        """A run that ends with the mesh of this line"""
+        paths = [os.path.join(folder, name) for name in ("record", "profile.csv")]
+        target = row["error.discretisation"] * (1 + 1e-9)
+        status, said, cpu = cpu_of([*command, "-adaptor_target", repr(target), "-record", paths[0], "-output_profile", paths[1]])
+        line = dict(case._asdict(), cycle=int(row["cycles"]), cpu=f"{cpu:.3f}", unknowns=int(row["unknowns"]))
+        run = record(paths[0]) if status in (0, 3) else {}
+        if run.get("unknowns") != row["unknowns"]:
+            return dict(line, verdict=said if not run else "ends earlier: the estimate grew")
+        nodes, pressures = profile(paths[1])
+        line.update(verdict=run["verdict"], cells=int(run["body.lower.cells"] + run["body.upper.cells"]), sweeps=int(run["sweeps"]))
+        line.update(P=run["pair.mid.force"], p0=run["pair.mid.pressure_max"], p0_nodal=pressures[0], edge=run["pair.mid.contact_edge"])
+        line.update(pressure_error=f"{pressure_error(reference(case), case.order, nodes, pressures):.3e}", estimate=run["error.discretisation"])
+        return line
+
+    def keep(self, case, rows, done, total):
+        with self.lock:
+            fresh = not os.path.exists(self.path)
+            with open(self.path, "a", newline="") as f:
+                out = csv.DictWriter(f, COLUMNS, restval="", lineterminator="\n")
+                if fresh:
+                    out.writeheader()
+                out.writerows(rows)
+            self.cases[case] = rows
+            print(f"{done:4}/{total}  {named(case):82}{len(rows):3} meshes  {rows[-1]['verdict'][:60]}", flush=True)
+
+    def all(self, cases):
+        todo = [case for case in cases if case not in self.cases]
+        print(f"{len(cases)} cases, {len(cases) - len(todo)} of them in {self.path}", flush=True)
+        with concurrent.futures.ThreadPoolExecutor(self.args.processes) as pool:
+            runs = {pool.submit(lambda case=case: list(self.meshes(case))): case for case in todo}
+            try:
+                for done, future in enumerate(concurrent.futures.as_completed(runs), 1):
+                    self.keep(runs[future], future.result(), done, len(todo))
+            except BaseException:
+                pool.shutdown(cancel_futures=True)
+                raise
+
+
+def named(case):
+    what = f"order {case.order}, {case.estimator}, {case.marking}, following {case.follow}"
+    return what if case[:3] == ("equal", SCENE_CLOSURE, SCENE_START) else f"{case.layers}, {case.closure}, {case.start}, {what}"
+
+
+def errors(case, row):
+    """Relative errors of P, p0, and the edge"""
+    one = reference(case)
+    return [abs(row[key] / one[name] - 1) for key, name in (("P", "P"), ("p0", "p0"), ("edge", "a"))]
+
+
+def solved(rows):
+    return [row for row in rows if row.get("P", "") != ""]
+
+
+def met(case, rows, target):
+    """The first mesh that meets a target which all later ones meet, too, and at least one later one does"""
+    found, rows = None, solved(rows)
+    for row in reversed(rows):
+        if any(error > most for error, most in zip(errors(case, row), target)):
+            break
+        found = row
+    return found if found is not None and found is not rows[-1] else None
+
+
+def pair(target):
+    return f"({target[0]:.0e}, {target[1]:.0e})".replace("e-0", "e-")
+
+
+def table(cases, study):
+    """Of each case one line, of each target what it took"""
+    yield "\n| order | estimator | marking | following | " + " | ".join(map(pair, TARGETS)) + " |\n" + "|---" * (4 + len(TARGETS)) + "|"
+    for case in cases:
+        rows, cells = study.cases.get(case, []), []
+        for target in TARGETS:
+            row = met(case, rows, target)
+            if row:
+                cells.append(f"{row['unknowns']:.0f}, {row['cycle']:.0f}, {row['sweeps']:.0f}, {float(row['cpu']):.2f}, {errors(case, row)[2]:.0e}, {float(row['pressure_error']):.0e}")
+            else:
+                cells.append("-")
+        if rows and not solved(rows):
+            cells = [f"*{rows[-1]['verdict']}*"] + [""] * (len(TARGETS) - 1)
+        yield f"| {case.order} | {case.estimator} | {case.marking} | {case.follow} | " + " | ".join(cells) + " |"
+
+
+def limits(study, cases):
+    """Of every limit the case with the fewest unknowns, on the scene and on the others with the same settings"""
+    yield "\n| where | order | target | unknowns | limit | | by |\n|---|---|---|---|---|---|---|"
+    for (order, index), limit in LIMITS.items():
+        for key in [("equal", SCENE_CLOSURE, SCENE_START), *OTHERS]:
+            scene, closure = key[0] == "equal" and key[2] == SCENE_START, key[1] != SCENE_CLOSURE
+            most = limit * (1 if scene and not closure else ALLOWED["closure" if closure else "other"])
+            found = [(row["unknowns"], case) for case in cases if case[:4] == (*key, order) for row in [met(case, study.cases.get(case, []), TARGETS[index])] if row]
+            where = "the scene" if scene and not closure else f"closure {key[1]}" if closure else key[2] if key[2] != SCENE_START else key[0]
+            text = f"| {where} | {order} | {pair(TARGETS[index])} | "
+            if not found:
+                yield text + f"- | {most:.0f} | **missed** | |"
+                continue
+            unknowns, case = min(found)
+            yield text + f"{unknowns:.0f} | {most:.0f} | {'met' if unknowns <= most else '**missed**'} | {case.estimator}, {case.marking}{'' if case.follow == 'yes' else ', no following'} |"
+
+
+def draw(study, folder):
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    plt.rcParams.update({"font.size": 8, "svg.hashsalt": "abut"})
+    figure, axes = plt.subplots(2, 2, figsize=(10, 7.5), layout="constrained")
+    with open(os.path.join(HERE, "peers.csv")) as f:
+        peers = list(csv.DictReader(line for line in f if not line.startswith("#")))
+    for (program, variants), marker in zip(PEERS.items(), "x+1234"):
+        mine = [row for row in peers if row["program"] == program and any(v in row["variant"] for v in variants) and row["err_P"]]
+        twice = 2 if program == "dealii" else 1  # one body
+        for axis, column in zip(axes.T, ("unknowns", "cum_cpu_s")):
+            for one, error in zip(axis, ("err_P", "err_p0")):
+                x = [twice * float(row[column] or row["cpu_s"] if column == "cum_cpu_s" else row[column]) for row in mine]
+                one.loglog(x, [float(row[error]) for row in mine], marker, color="0.5", ms=5, label=program)
+    for order, color in zip(ORDERS, ("C0", "C1", "C2", "C3")):
+        for follow, style in (("yes", "o-"), ("no", "o:")):
+            case = Case("equal", SCENE_CLOSURE, SCENE_START, order, BEST[0], BEST[1], follow)
+            rows = solved(study.cases.get(case, []))
+            if not rows:
+                continue
+            label = f"order {order}" + (", following" if follow == "yes" else "")
+            for axis, column in zip(axes.T, ("unknowns", "cpu")):
+                for k, one in enumerate(axis):
+                    one.loglog([float(row[column]) for row in rows], [errors(case, row)[k] for row in rows], style, color=color, ms=3, lw=1, label=label)
+    for axis, name in zip(axes, ("error of P", "error of $p_0$")):
+        axis[0].set(xlabel="unknowns of both bodies", ylabel=name)
+        axis[1].set(xlabel="CPU seconds, all meshes (Abut: with start-up)")
+    axes[0, 0].legend(frameon=False, fontsize=7, ncols=2)
+    for kind in ("png", "svg"):
+        figure.savefig(os.path.join(folder, f"accuracy.{kind}"), dpi=150, metadata={"Date": None} if kind == "svg" else None)
+
+
+PEERS = {"ngsolve": ("ZZ",), "dealii": ("Kelly",), "getfem": ("ALM", "pen"), "kratos": ("ALM",)}
+BEST = ("residual", "bulk .5")  # what the limits speak of, and the plot shows
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--abut", default=os.path.join(TOP, "build", "bin", "abut"))
+    parser.add_argument("--out", default="out")
+    parser.add_argument("--processes", type=int, default=2, help="runs at a time [2]")
+    parser.add_argument("--quick", action="store_true", help="one estimator and marking, with following, and the scene only")
+    parser.add_argument("--tables", action="store_true", help="run nothing")
+    args = parser.parse_args()
+    os.makedirs(args.out, exist_ok=True)
+    study = Study(args)
+    scene = ("equal", SCENE_CLOSURE, SCENE_START)
+    main_cases = [Case(*scene, *rest) for rest in ((o, e, m, f) for o in ORDERS for e in ESTIMATORS for m in MARKINGS for f in FOLLOWING)]
+    others = [Case(*key, o, e, m, "yes") for key in OTHERS for o in ORDERS for e in ESTIMATORS[:2] for m in list(MARKINGS)[:1]]
+    if args.quick:
+        main_cases, others = [case for case in main_cases if (case.estimator, case.marking) == BEST and case.follow == "yes"], []
+    cases, seconds = main_cases + others, load()
+    if not args.tables:
+        study.all(cases)
+    path = os.path.join(args.out, "accuracy.md")
+    with open(path, "w") as f:
+        print("In every field: unknowns of both bodies, meshes, sweeps, CPU seconds of the whole process, error of the edge, error of the pressures in L2,", file=f)
+        print("of the first mesh from which on all meet the target for the relative errors of P and p0.", file=f)
+        print(f"The fixed reference load took {seconds:.3f} s of CPU.", file=f)
+        print("\n".join(table(main_cases, study)), file=f)
+        for key in OTHERS if others else []:
+            print(f"\n{key[0]}, closure {key[1]}, first meshes {key[2]}", file=f)
+            print("\n".join(table([case for case in others if case[:3] == key], study)), file=f)
+        print("\n".join(limits(study, cases)), file=f)
+    draw(study, args.out)
+    print(path)
+    with open(path) as f:
+        print(f.read())
+
+
+if __name__ == "__main__":
+    main()
