@@ -177,8 +177,8 @@ PetscErrorCode AbutSceneSetFromOptions(AbutScene scene)
   if (scene->interleave)
     PetscCall(AbutOptionsReal(PetscOptionsObject, "-scene_eps_u", "Relative change of the traces at the end", &scene->eps_u, NULL));
   PetscCall(AbutOptionsReal(PetscOptionsObject, "-scene_tol", "Relative error in the energy norm to be reached", &scene->tol, &hastol));
-  PetscCall(AbutOptionsBool(PetscOptionsObject, "-record_time_ratio", "Processor time in linear problems on the last mesh", &scene->wantsratio,
-                            NULL));
+  PetscCall(AbutOptionsBool(PetscOptionsObject, "-record_time_ratio", "Processor time in linear problems on the last mesh",
+                            &scene->wantsratio, NULL));
   PetscCall(PetscOptionsString("-adaptor_type", "Type of the adaptor", NULL, type, type, sizeof(type), &adapts));
   PetscCall(PetscOptionsString("-estimator_type", "Type of the estimator", NULL, type, type, sizeof(type), &estimates));
   PetscCall(AbutScenePlugins_Private(scene, PetscOptionsObject));

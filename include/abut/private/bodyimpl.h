@@ -36,9 +36,9 @@ struct _p_AbutBody {
   Vec           rhs, u;      /* of the last linear solve; u has ghost values */
   PetscInt      nmodes;      /* rigid motions that no prescribed displacement resists */
   Vec           mode[ABUT_MAX_MODES];
-  MatNullSpace  free;           /* the modes, NULL if there are none */
-  PetscReal    *nodeu;          /* [2*nnodes] displacement at all local nodes, hanging ones too */
-  PetscReal     strain;         /* energy of nodeu, once it has been asked for */
+  MatNullSpace  free;   /* the modes, NULL if there are none */
+  PetscReal    *nodeu;  /* [2*nnodes] displacement at all local nodes, hanging ones too */
+  PetscReal     strain; /* energy of nodeu, once it has been asked for */
   PetscBool     strainknown;
   AbutBoundary *boundary;       /* skeleton: contours, nodes, sides; no values */
   PetscInt     *boundaryglobal; /* [nnodes] global numbers of its nodes */
