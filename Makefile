@@ -78,6 +78,10 @@ run: all
 study-loops: all
 	@$(PYTHON) examples/studies/loops/loops.py --abut $(B)/bin/abut --out out
 
+# where the time of an adaptive run goes: see examples/studies/shares
+study-shares: all
+	@$(PYTHON) examples/studies/shares/shares.py --abut $(B)/bin/abut --out out
+
 # make test T=layers runs what has "layers" in its name
 test: all $(CHECKS)
 	@$(PYTHON) tests/run.py --build $(B) $(T)
@@ -111,5 +115,5 @@ VERSION = $(shell sed -n 's/^version: *//p' CITATION.cff)
 clean:
 	rm -rf $(B) out
 FORCE:
-.PHONY: all run study-loops test check asan setup deps deps-dev format lint install clean FORCE
+.PHONY: all run study-loops study-shares test check asan setup deps deps-dev format lint install clean FORCE
 .DELETE_ON_ERROR:

@@ -40,6 +40,7 @@ PETSC_EXTERN PetscErrorCode AbutExpressionEvaluate(AbutExpression, const PetscRe
 PETSC_EXTERN PetscErrorCode AbutExpressionGetText(AbutExpression, const char *[]);
 PETSC_EXTERN PetscErrorCode AbutExpressionDestroy(AbutExpression *);
 
+PETSC_EXTERN PetscErrorCode AbutGetProcessorTime(PetscLogDouble *);
 PETSC_EXTERN PetscErrorCode AbutSolveBand(PetscInt, PetscInt, PetscReal[], PetscInt, PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutPluginAppend(MPI_Comm, const char[]);
 PETSC_EXTERN PetscErrorCode AbutPluginLoad(MPI_Comm, const char[], const char[], PetscBool *);

@@ -181,7 +181,7 @@ PetscErrorCode AbutBodySetUp(AbutBody body)
   PetscCall(AbutMeshGetGeneration(body->mesh, &generation));
   if (generation == body->generation) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(AbutBodyReset_Private(body));
-  PetscCall(PetscGetCPUTime(&begun));
+  PetscCall(AbutGetProcessorTime(&begun));
   PetscCall(AbutMeshGetTopology(body->mesh, &t));
   PetscCall(PetscCalloc1(2 * t->nnodes, &body->nodeu));
   PetscCall(AbutElementCreate_Private(body->mesh, &body->element));
@@ -200,7 +200,7 @@ PetscErrorCode AbutBodySetUp(AbutBody body)
   PetscCall(KSPSetOperators(body->ksp, body->A, body->P));
   PetscCall(AbutBodyGiveFactorRoom_Private(body));
   PetscCall(AbutBodyFactor_Private(body));
-  PetscCall(PetscGetCPUTime(&done));
+  PetscCall(AbutGetProcessorTime(&done));
   body->setupcpu   = done - begun;
   body->generation = generation;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -75,11 +75,11 @@ PetscErrorCode AbutBodyGetLinearCost(AbutBody body, PetscReal rtol, PetscReal *c
   PetscCall(KSPGetTolerances(body->ksp, &own, NULL, NULL, NULL));
   PetscCall(KSPSetInitialGuessNonzero(body->ksp, PETSC_FALSE));
   PetscCall(KSPSetTolerances(body->ksp, rtol, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
-  PetscCall(PetscGetCPUTime(&begun));
+  PetscCall(AbutGetProcessorTime(&begun));
   PetscCall(AbutBodyRightHandSide_Private(body, body->rhs));
   PetscCall(MatNullSpaceRemove(body->free, body->rhs));
   PetscCall(KSPSolve(body->ksp, body->rhs, x));
-  PetscCall(PetscGetCPUTime(&done));
+  PetscCall(AbutGetProcessorTime(&done));
   PetscCall(KSPSetInitialGuessNonzero(body->ksp, nonzero));
   PetscCall(KSPSetTolerances(body->ksp, own, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
   PetscCall(VecDestroy(&x));

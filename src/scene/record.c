@@ -236,7 +236,7 @@ PetscErrorCode AbutSceneRecordRatio_Private(AbutScene scene)
 
   PetscFunctionBegin;
   if (!scene->wantsratio) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscGetCPUTime(&whole));
+  PetscCall(AbutGetProcessorTime(&whole));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &whole, 1, MPI_DOUBLE, MPI_SUM, comm));
   for (PetscInt b = 0; b < scene->nbodies; ++b) {
     PetscReal cpu;
