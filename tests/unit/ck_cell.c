@@ -98,6 +98,67 @@ START_TEST(what_cells_add_at_their_sides_is_summed)
 }
 END_TEST
 
+/* Cells add their angles: a full turn, half of one on a side of the box and at a hanging vertex, a quarter in a corner */
+START_TEST(what_cells_add_at_their_vertices_is_summed)
+{
+  AbutMesh                mesh = CkBox(0., 0., 3., 2., 6, 4, (AbutShape)_i);
+  const AbutMeshTopology *t;
+  PetscReal              *angle;
+
+  CkRefine(mesh, CkScattered, 3);
+  t = CkTopology(mesh);
+  CkOk(PetscCalloc1(2 * t->nvertices, &angle));
+  for (PetscInt i = 0; i < t->corners * t->ncells; ++i) {
+    const PetscInt  *cell = t->cell + i / t->corners * t->corners, k = i % t->corners;
+    const PetscReal *p = t->x + 2 * cell[k], *q = t->x + 2 * cell[(k + 1) % t->corners],
+                    *r = t->x + 2 * cell[(k + t->corners - 1) % t->corners];
+
+    angle[2 * cell[k]] += PetscAtan2Real((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]),
+                                         (q[0] - p[0]) * (r[0] - p[0]) + (q[1] - p[1]) * (r[1] - p[1]));
+    angle[2 * cell[k] + 1] += 1.;
+  }
+  CkOk(AbutMeshSumAtVertices(mesh, 2, angle));
+  for (PetscInt i = 0; i < t->corners * t->ncells; ++i) {
+    const PetscInt  v = t->cell[i];
+    const PetscReal x = t->x[2 * v], y = t->x[2 * v + 1];
+    const PetscInt  halves = (x < 1e-9 || x > 3. - 1e-9) + (y < 1e-9 || y > 2. - 1e-9) + (t->unknown[v] < 0);
+
+    ck_assert_double_eq_tol(angle[2 * v], 2. * PETSC_PI / (1 << halves), 1e-10);
+    if (_i == ABUT_QUAD) ck_assert_double_eq(angle[2 * v + 1], 4. / (1 << halves));
+  }
+  CkOk(PetscFree(angle));
+  CkOk(AbutMeshDestroy(&mesh));
+}
+END_TEST
+
+/* x^i y^j over the reference cell: 2/(i+1) 2/(j+1) for even powers on the square, i! j! / (i+j+2)! on the triangle */
+START_TEST(gauss_points_integrate_what_they_should)
+{
+  AbutMesh mesh = CkBox(0., 0., 1., 1., 1, 1, (AbutShape)_i);
+
+  for (PetscInt n = 1; n <= 6; ++n) {
+    PetscQuadrature  quadrature;
+    const PetscReal *xi, *w;
+    PetscInt         points;
+
+    CkOk(AbutMeshCreateQuadrature(mesh, n, &quadrature));
+    CkOk(PetscQuadratureGetData(quadrature, NULL, NULL, &points, &xi, &w));
+    ck_assert_int_eq(points, n * n);
+    for (PetscInt i = 0; i < 2 * n; ++i)
+      for (PetscInt j = 0; j < (_i == ABUT_QUAD ? 2 * n : 2 * n - i); ++j) {
+        const PetscReal square   = i % 2 || j % 2 ? 0. : 4. / ((i + 1.) * (j + 1.));
+        const PetscReal triangle = tgamma(i + 1.) * tgamma(j + 1.) / tgamma(i + j + 3.);
+        PetscReal       sum      = 0.;
+
+        for (PetscInt q = 0; q < points; ++q) sum += w[q] * PetscPowRealInt(xi[2 * q], i) * PetscPowRealInt(xi[2 * q + 1], j);
+        ck_assert_double_eq_tol(sum, _i == ABUT_QUAD ? square : triangle, 1e-13);
+      }
+    CkOk(PetscQuadratureDestroy(&quadrature));
+  }
+  CkOk(AbutMeshDestroy(&mesh));
+}
+END_TEST
+
 START_TEST(a_point_is_in_the_cells_that_touch_it_and_in_no_other)
 {
   AbutMesh                mesh        = CkBox(0., 0., 3., 2., 3, 2, (AbutShape)_i);
@@ -286,6 +347,8 @@ int main(int argc, char **argv)
   tcase_set_timeout(tc, 0);
   tcase_add_loop_test(tc, a_cell_maps_to_where_its_inverse_finds_the_point, 0, 2);
   tcase_add_loop_test(tc, what_cells_add_at_their_sides_is_summed, 0, 2);
+  tcase_add_loop_test(tc, what_cells_add_at_their_vertices_is_summed, 0, 2);
+  tcase_add_loop_test(tc, gauss_points_integrate_what_they_should, 0, 2);
   tcase_add_loop_test(tc, a_point_is_in_the_cells_that_touch_it_and_in_no_other, 0, 2);
   tcase_add_loop_test(tc, the_measures_of_a_uniform_mesh_are_those_of_its_right_triangles, 0, 2);
   tcase_add_test(tc, refined_all_along_its_boundary_a_mesh_misses_the_hypothesis_of_lemma_1);

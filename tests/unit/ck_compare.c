@@ -137,6 +137,32 @@ START_TEST(a_linear_stress_is_integrated_exactly_on_every_cell)
 }
 END_TEST
 
+/* Cells of order p: x^p, whose square has degree 2p, within the rules of p+1 points */
+START_TEST(a_stress_of_the_order_of_the_cells_is_integrated_exactly)
+{
+  const PetscInt          order = 1 + _i % 4;
+  const AbutMeshTopology *t;
+  const PetscReal        *e;
+  char                    text[8];
+  Vec                     eta;
+
+  CkOk(PetscSNPrintf(text, sizeof(text), "%d", (int)order));
+  CkOk(PetscOptionsSetValue(NULL, "-box_mesh_order", text));
+  rest = CkBox(PETSC_COMM_WORLD, _i < 4 ? ABUT_QUAD : ABUT_TRIANGLE, 1., 4, 4, NULL, NULL);
+  CkOk(PetscOptionsClearValue(NULL, "-box_mesh_order"));
+  t            = CkTopology(rest);
+  stress_power = order;
+  Compare(rest, Stress_Power, &eta);
+  CkOk(VecGetArrayRead(eta, &e));
+  ck_assert_int_eq(t->order, order);
+  for (PetscInt c = 0; c < t->ncells; ++c)
+    ck_assert_double_eq_tol(PetscSqr(e[c]), Mean(t, c, 2 * order) * (2. * order + 1.), 1e-12 * (2. * order + 1.));
+  CkOk(VecRestoreArrayRead(eta, &e));
+  CkOk(VecDestroy(&eta));
+  CkOk(AbutBodyDestroy(&rest));
+}
+END_TEST
+
 /* With s11 = x^2, whose square has degree 4, beyond 2x2 and 3 points, within 3x3 and 6 points */
 static void CheckRules(AbutShape shape, PetscInt nx, PetscInt ny)
 {
@@ -303,6 +329,7 @@ int main(int argc, char **argv)
   PetscCall(AbutInitialize(&argc, &argv, NULL));
   tcase_add_loop_test(tests, a_constant_stress_against_none_gives_one_everywhere, 0, 2);
   tcase_add_loop_test(tests, a_linear_stress_is_integrated_exactly_on_every_cell, 0, 2);
+  tcase_add_loop_test(tests, a_stress_of_the_order_of_the_cells_is_integrated_exactly, 0, 7);
   tcase_add_test(tests, cells_that_touch_the_boundary_have_the_richer_rule_on_any_number_of_ranks);
   tcase_add_loop_test(tests, reference_points_and_points_in_space_agree, 0, 2);
   tcase_add_loop_test(tests, a_shifted_uniform_stress_gives_the_shift_over_the_stress, 0, 2);
