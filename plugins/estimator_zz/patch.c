@@ -43,10 +43,11 @@ void AbutPatchAdd_Private(const AbutPatchSpace *space, const PetscReal d[2], con
 }
 
 /* The factor of the normal equations; a term that the samples do not tell apart from those before it is left out. The test is relative to the
-   term itself, so that neither it nor round-off depend on the unit of length. At order 4 over 2x2 cells the last term keeps 2e-3 of itself. */
+   term itself, so that neither it nor round-off depend on the unit of length. At order 4 the last term keeps 1.5e-3 of itself over four equal
+   cells, and 5e-5 where two are half as wide and two half as high; what cannot be told leaves 1e-14. */
 static void AbutPatchFactor_Private(const AbutPatchSpace *space, const PetscReal m[], PetscReal L[][ABUT_PATCH_TERMS_MAX], PetscBool out[])
 {
-  const PetscReal apart = space->order == 1 ? 1e-3 : 1e-6;
+  const PetscReal apart = space->order == 1 ? 1e-3 : 1e-9;
 
   for (PetscInt i = 0; i < space->terms; ++i) { /* Cholesky */
     PetscReal own = 0.;

@@ -158,13 +158,13 @@ static PetscReal Polynomial(const AbutPatchSpace *space, PetscInt s, const Petsc
   return value;
 }
 
-/* Samples of these polynomials at n x n points of four cells around the vertex: those on the right half as wide as those on the left */
+/* Samples of these polynomials at n x n points of four unequal cells around the vertex */
 static void AddSamples(const AbutPatchSpace *space, PetscReal unit, PetscReal m[])
 {
   const PetscInt n = space->order + (space->order == 1);
 
   for (PetscInt i = 0; i < 4 * n * n; ++i) {
-    const PetscReal h[4] = {-1., 0.5, -1., 1.}, x = h[i % 2] * (i / 4 % n + 0.3) / n, y = h[2 + i / 2 % 2] * (i / 4 / n + 0.4) / n;
+    const PetscReal h[4] = {-1., 0.3, -0.4, 1.}, x = h[i % 2] * (i / 4 % n + 0.3) / n, y = h[2 + i / 2 % 2] * (i / 4 / n + 0.4) / n;
     const PetscReal at[2] = {x, y}, d[2] = {unit * x, unit * y};
     const PetscReal s[3] = {Polynomial(space, 0, at), Polynomial(space, 1, at), Polynomial(space, 2, at)};
 
