@@ -1,0 +1,95 @@
+"""A stiff punch with sharp corners, examples/punch: the pressure at its corner is r^(-1/2), so that uniform meshes give half an order in h,
+and adapted ones that of their elements. The half model; E of punch and base 2.1e6 and 2.1e2.
+
+The error is that of the strain energy F, which for given displacements is never below the exact one: the root of F_h/F - 1 is the relative
+error in the energy norm. F is from meshes of order 4, graded to 1e-7 at the corner.
+
+Not here: an L-shaped body under a punch, with a corner r^0.54 where nothing touches; bodies are boxes until meshes can be read from files.
+"""
+import csv, functools, math, os, tempfile
+
+from abut import ROOT, read_csv, run
+
+PUNCH = os.path.join(ROOT, "examples", "punch", "punch.yml")
+SIZE = "max({h},{slope}*(abs(x-1)+abs(y)))"
+
+
+def press(*options, adaptor="", **keys):
+    """The scene with other keys for its adaptor and estimator, without any if there are none"""
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "scene.yml")
+        with open(PUNCH) as old, open(path, "w") as new:
+            new.writelines(line for line in old if not line.startswith(("adaptor:", "estimator:")))
+            new.write(adaptor)
+        return run(path, *options, **keys)
+
+
+def both(text):
+    return [f"-{body}_{text}" for body in ("base", "punch")]
+
+
+def graded(order, h, slope, *options):
+    """Cells at the corner are of size h"""
+    return press(*both(f"mesh_order {order}"), *both(f"mesh_size {SIZE.format(h=h, slope=slope)}"), "-snes_rtol 1e-10", *options)
+
+
+@functools.lru_cache(None)
+def exact_energy():
+    return graded(4, 1e-7, 0.3)["energy.strain"]
+
+
+def error(record):
+    return math.sqrt(record["energy.strain"] / exact_energy() - 1)
+
+
+def test_the_energy_of_reference_is_settled():
+    """From order 3 and coarser meshes too, and from uniform meshes by their law F_h - F = C h"""
+    F = exact_energy()
+    assert abs(graded(3, 1e-6, 0.3)["energy.strain"] / F - 1) < 1e-4
+    assert abs(graded(4, 1e-5, 0.5)["energy.strain"] / F - 1) < 1e-4
+    coarse, fine = (press(*both("mesh_order 2"), f"-base_mesh_cells {4 * n},{4 * n} -punch_mesh_cells {n},{n}")["energy.strain"] for n in (4, 8))
+    assert abs((2 * fine - coarse) / F - 1) < 1e-3, (coarse, fine, F)
+
+
+def test_the_pressure_is_that_under_a_rigid_punch():
+    """On a half-plane P/(pi sqrt(a^2 - x^2)) for a force P, twice that of the half model; the base is 40 times as deep as the punch is wide"""
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "profile.csv")
+        record = graded(3, 1e-6, 0.2, "-base_mesh_box 0,-80,80,0 -output_profile", path)
+        with open(path) as f:
+            nodes = sorted((float(row["x"]), float(row["pressure"])) for row in csv.DictReader(f) if row["side"] == "pressure")
+    P = 2 * record["pair.mid.force"]
+    for x, p in nodes:
+        if x < 0.95:
+            ratio = p * math.pi * math.sqrt(1 - x * x) / P
+            assert abs(ratio - 1) < 1e-2, (x, ratio)
+    assert abs(nodes[0][1] * math.pi / P - 1) < 5e-3 and len([x for x, _ in nodes if x < 0.95]) > 10
+    assert abs(record["energy.strain"] / (0.5e-3 * record["pair.mid.force"]) - 1) < 1e-6
+
+
+def test_uniform_meshes_have_half_an_order():
+    for order in 1, 2:
+        e = [error(press(*both(f"mesh_order {order}"), f"-base_mesh_cells {4 * n},{4 * n} -punch_mesh_cells {n},{n}")) for n in (2, 4, 8)]
+        print(order, e)
+        for coarse, fine in zip(e, e[1:]):
+            assert abs(math.log2(coarse / fine) - 0.5) < 0.06, (order, e)
+
+
+def test_adapted_meshes_of_order_1_have_the_order_of_smooth_solutions():
+    """N^(-1/2), uniform meshes N^(-1/4); every cycle converges its contact, and the loop leaves the least"""
+    for estimator in "zz", "fembem":
+        with tempfile.TemporaryDirectory() as folder:
+            adaptor = f"adaptor: {{type: doerfler, bulk: 0.5, target: 0.02, max_level: 28}}\nestimator: {{type: {estimator}}}\n"
+            press("-scene_loop_share 0", f"-record_csv {folder}/run.csv", adaptor=adaptor)
+            rows = read_csv(f"{folder}/run.csv")
+        e = [error(row) for row in rows]
+        effectivity = [row["error.discretisation"] / one for row, one in zip(rows, e)]
+        for row, one, ratio in zip(rows, e, effectivity):
+            print(f"{estimator}: {row['unknowns']} unknowns, error {one:.4f}, estimate over error {ratio:.2f}")
+        start = max(i for i, row in enumerate(rows) if row["unknowns"] <= rows[-1]["unknowns"] / 30)
+        rate = math.log(e[start] / e[-1]) / math.log(rows[-1]["unknowns"] / rows[start]["unknowns"])
+        print(f"{estimator}: N^-{rate:.3f}")
+        assert rate > 0.48 and e[-1] < 0.03, (estimator, rate, e[-1])
+        assert all(0.75 < ratio < 1.15 for ratio in effectivity[-5:]), effectivity
+        uniform = error(press("-base_mesh_cells 64,64 -punch_mesh_cells 16,16"))
+        assert e[-1] < 0.3 * uniform, (e[-1], uniform)
