@@ -8,7 +8,7 @@
 enum {
   GRID,
   SCATTERED, /* cells of several sizes */
-  SLANTED,   /* trapezia: a vertex of the top is moved by a third of a cell */
+  SLANTED,   /* trapezia: a vertex of the top is moved by a third of a cell, the one opposite stays */
   NMESHES
 };
 
@@ -19,10 +19,14 @@ static AbutBody Make(CkField *field, int which, PetscInt refine)
   if (which == SCATTERED) CkRefine(CkMeshOf(body), CkScattered, 2);
   CkRefine(CkMeshOf(body), CkEverywhere, refine);
   if (which == SLANTED) {
-    AbutTie tie = {.reference = 1., .wanted = 1.08};
+    AbutTie tie[2] = {
+      {.reference = 1., .wanted = 1.08},
+      {.reference = 1., .wanted = 1.  }
+    };
 
-    CkOk(AbutMeshFindSide(CkMeshOf(body), "side", "top", &tie.side));
-    CkOk(AbutMeshSetTies(CkMeshOf(body), 1, &tie));
+    CkOk(AbutMeshFindSide(CkMeshOf(body), "side", "top", &tie[0].side));
+    CkOk(AbutMeshFindSide(CkMeshOf(body), "side", "bottom", &tie[1].side));
+    CkOk(AbutMeshSetTies(CkMeshOf(body), 2, tie));
     CkOk(AbutMeshAdapt(CkMeshOf(body), NULL));
   }
   return body;
