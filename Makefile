@@ -82,6 +82,10 @@ study-loops: all
 study-shares: all
 	@$(PYTHON) examples/studies/shares/shares.py --abut $(B)/bin/abut --out out
 
+# what an answer costs, by order, estimator, marking and following, some 2,000 runs: see examples/studies/accuracy
+study-accuracy: all
+	@$(PYTHON) examples/studies/accuracy/accuracy.py --abut $(B)/bin/abut --out out
+
 # make test T=layers runs what has "layers" in its name
 test: all $(CHECKS)
 	@$(PYTHON) tests/run.py --build $(B) $(T)
@@ -115,5 +119,5 @@ VERSION = $(shell sed -n 's/^version: *//p' CITATION.cff)
 clean:
 	rm -rf $(B) out
 FORCE:
-.PHONY: all run study-loops study-shares test check asan setup deps deps-dev format lint install clean FORCE
+.PHONY: all run study-loops study-shares study-accuracy test check asan setup deps deps-dev format lint install clean FORCE
 .DELETE_ON_ERROR:

@@ -47,6 +47,12 @@ def test_quick():
     assert abs(record["pair.mid.force"] / 123.078 - 1) < 0.05 and record["time.total"] < 20
 
 
+def test_accuracy():
+    exact = os.path.join(ROOT, "examples", "studies", "accuracy", "layers_exact.yml")
+    coarse, high = (run(exact, *options(name))["pair.mid.force"] for name in ("accuracy.opts", "accuracy_high.opts"))
+    assert abs(coarse / high - 1) < 1e-5, (coarse, high)
+
+
 def test_none_is_forgotten():
     with open(__file__) as f:
         text = f.read()
