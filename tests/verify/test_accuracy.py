@@ -32,7 +32,8 @@ def unknowns(rows, one, target):
 
 
 def reaches(target, most, order, options, layers="equal", closure=1.366):
-    found = unknowns(series(order, int(most), options, f"-upper_bc_top_u2 {-1e-3 * closure!r}"), references()[layers, closure], target)
+    rows = series(order, int(1.3 * most), options, f"-upper_bc_top_u2 {-1e-3 * closure!r}")  # of one body, so twice this of both
+    found = unknowns(rows, references()[layers, closure], target)
     assert found <= most, (target, order, options, closure, found, most)
 
 
