@@ -36,23 +36,23 @@ static PetscErrorCode AbutInterfaceFunction_Private(SNES snes, Vec x, Vec F, voi
 
 #define ABUT_WINDOW 50 /* iterations over which the residual must have fallen, or two time constants of the slowest mode */
 
-/* Beyond its limit the relaxation does not blow up, it wanders between open and overloaded contact: then the least residual of a window of
-   iterations is not much below that of the window before. Half of what the slowest mode loses is asked for, or anything at all where that
-   is not known. */
+/* Beyond its limit the relaxation does not blow up, it wanders between open and overloaded contact: then the residuals of a window of
+   iterations are not much below those of the window before, in the geometric mean, which one lucky iterate does not change. Half of what
+   the slowest mode loses is asked for, or anything at all where that is not known. */
 static PetscBool AbutInterfaceStagnates_Private(AbutInterface f, PetscInt it, PetscReal fnorm)
 {
   const PetscInt window    = f->rate > 0. ? PetscMax(ABUT_WINDOW, (PetscInt)(2. / f->rate)) : 4 * ABUT_WINDOW;
   PetscBool      stagnates = PETSC_FALSE;
 
-  if (!it) f->best[0] = f->best[1] = PETSC_MAX_REAL;
+  if (!it) f->level[0] = f->level[1] = 0.;
   else if (it % window == 0) {
     const PetscReal fall = 1. - PetscPowRealInt(1. - PetscMin(f->rate, 1.), window);
 
-    stagnates  = (PetscBool)(it >= 3 * window && f->best[0] >= (1. - 0.5 * fall) * f->best[1]);
-    f->best[1] = f->best[0];
-    f->best[0] = fnorm;
+    stagnates   = (PetscBool)(it >= 3 * window && f->level[0] - f->level[1] >= PetscLogReal(1. - 0.5 * fall));
+    f->level[1] = f->level[0];
+    f->level[0] = 0.;
   }
-  f->best[0] = PetscMin(f->best[0], fnorm);
+  f->level[0] += PetscLogReal(PetscMax(fnorm, PETSC_MACHINE_EPSILON * f->fnorm)) / window;
   return stagnates;
 }
 

@@ -61,7 +61,7 @@ struct _p_AbutInterface {
   PetscBool        linearfailed;
   PetscReal        residualbest;
   PetscReal        fnorm;         /* of F at the first iterate */
-  PetscReal        best[2];       /* least norm of F in the present window of iterations, and of the one before */
+  PetscReal        level[2];      /* mean of the logarithm of the norm of F in the present window of iterations, and in the one before */
   PetscReal        rate;          /* what the solver's slowest mode loses in an iteration, 0 unknown */
   const char      *failure;       /* why the stop test gave up, in one word */
   char             floating[256]; /* the body that contact does not hold, and its motion */
