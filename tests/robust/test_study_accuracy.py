@@ -1,4 +1,5 @@
 """The tables of examples/studies/accuracy: one order, estimator and marking"""
+
 import csv, os, subprocess, sys, tempfile
 
 from abut import PROGRAM, ROOT

@@ -1,5 +1,6 @@
 """Errors of force and peak pressure over unknowns, on two layers in exact contact, both adapted from 8 by 2 quads: the limits of
 examples/studies/accuracy, with one estimator and marking each. A target counts if every later mesh meets it too, and there is one."""
+
 import json, math, os, tempfile
 
 from abut import LAYERS, ROOT, read_csv, run
@@ -38,7 +39,7 @@ def reaches(target, most, order, options, layers="equal", closure=1.366):
 
 
 def test_references():
-    """Finite elements of order 9 in both bodies agree with the integral equation, to their own error bounds; the series are what they say"""
+    """Finite elements of order 9 in both bodies agree with the integral equation to their error bounds; the series are what they say"""
     with open(os.path.join(os.path.dirname(LAYERS), "reference.json")) as f:
         finite = json.load(f)["cases"]["0"]
     for key in ("a", "p0", "P"):

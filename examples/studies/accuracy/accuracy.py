@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""What an answer costs: errors of contact force and peak pressure on two layers in exact contact, for every order, estimator, marking, with and
-without following of the contact edge.
+"""What an answer costs: errors of contact force and peak pressure on two layers in exact contact, for every order, estimator, marking, with
+and without following of the contact edge.
 
   accuracy.py [--abut build/bin/abut] [--out out] [--processes 2] [--quick] [--order 2] [--tables]
 
@@ -8,6 +8,7 @@ Leaves accuracy.csv, one line a mesh, accuracy.md, the tables, and accuracy.png 
 mesh: its CPU seconds are those of the whole process, start-up included. Cases that accuracy.csv already has are not repeated: delete it
 after a change of the program. --tables runs nothing and makes tables of what is there.
 """
+
 import argparse, collections, concurrent.futures, csv, json, os, subprocess, sys, tempfile, threading, time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -25,7 +26,7 @@ MARKINGS = {
     "bulk .7, jump 3": "-adaptor_bulk 0.7 -adaptor_jump 3",
 }
 FOLLOWING = ("yes", "no")
-MOST = {1: 14000, 2: 4500, 3: 3500, 4: 6000}  # unknowns of one body, by order: far enough beyond the limits to see whether a target stays met
+MOST = {1: 14000, 2: 4500, 3: 3500, 4: 6000}  # unknowns of one body, by order: beyond the limits, to see whether a target stays met
 LAYERS = {"equal": "", "steel on aluminium": "-lower_material_young 7e4 -lower_material_poisson 0.33"}
 STARTS = {"8,2 on 8,2": "", "8,2 on 6,2": "-lower_mesh_cells 6,2"}
 SCENE_CLOSURE, SCENE_START = 1.366, "8,2 on 8,2"
@@ -34,17 +35,25 @@ OTHERS = [("equal", closure, SCENE_START) for closure in (1.0, 1.2, 1.6, 2.2)]
 OTHERS += [("steel on aluminium", SCENE_CLOSURE, SCENE_START), ("equal", SCENE_CLOSURE, "8,2 on 6,2")]
 TARGETS = ((1e-3, 2e-3), (1e-4, 1e-3), (1e-5, 1e-4), (1e-7, 1e-5), (1e-8, 5e-6))  # of P and p0
 LIMITS = {(1, 1): 9500, (2, 1): 900, (2, 2): 2100, (3, 2): 1700, (4, 3): 3800, (4, 4): 6200}  # unknowns by order and target
-OTHERS_BY = [(order, estimator, "bulk .5", "yes" if order > 1 else "no") for order in ORDERS for estimator in ESTIMATORS]  # following as by default
+OTHERS_BY = [(order, estimator, "bulk .5", "yes" if order > 1 else "no") for order in ORDERS for estimator in ESTIMATORS]
 OTHERS_BY += [(2, estimator, "bulk .7", "yes") for estimator in ESTIMATORS]
 OTHERS_BY += [(order, estimator, marking, "yes") for order in (3, 4) for estimator in ("zz", "residual") for marking in list(MARKINGS)[2:]]
 ALLOWED = {"closure": 1.15, "other": 1.5}  # times these where the closure, or materials and first meshes are others
-COLUMNS = "layers closure start order estimator marking follow cycle verdict unknowns cells sweeps P p0 p0_nodal edge pressure_error estimate cpu".split()
+PEERS = {"ngsolve": ("ZZ",), "dealii": ("Kelly",), "getfem": ("ALM", "pen"), "kratos": ("ALM",)}
+BEST = ("residual", "bulk .5")  # what the plot shows, and --quick runs
+HEAD = """In every field: unknowns of both bodies, meshes, sweeps, CPU seconds of the whole process, relative error of the edge and of the
+nodal pressures in L2, all of the first mesh from which on every mesh meets the target for the relative errors of (P, p0).
+The fixed reference load took {:.3f} s of CPU."""
+with open(os.path.join(HERE, "reference.json")) as _file:
+    REFERENCE = json.load(_file)
 Case = collections.namedtuple("Case", "layers closure start order estimator marking follow")
+COLUMNS = [*Case._fields, *"cycle verdict unknowns cells sweeps P p0 p0_nodal edge pressure_error estimate cpu".split()]
 
 
 def options(case):
     text = f"-lower_mesh_order {case.order} -upper_mesh_order {case.order} -upper_bc_top_u2 {-1e-3 * case.closure!r}"
-    text += f" -estimator_type {case.estimator} {MARKINGS[case.marking]} -adaptor_max_unknowns {MOST[case.order]} -adaptor_follow {case.follow}"
+    text += f" -estimator_type {case.estimator} {MARKINGS[case.marking]} -adaptor_max_unknowns {MOST[case.order]}"
+    text += f" -adaptor_follow {case.follow}"
     return [*text.split(), *LAYERS[case.layers].split(), *STARTS[case.start].split()]
 
 
@@ -53,10 +62,6 @@ def reference(case):
         if (one["materials"], one["closure"]) == (case.layers, case.closure):
             return one
     raise SystemExit(f"reference.json has no {case.layers} with closure {case.closure}")
-
-
-with open(os.path.join(HERE, "reference.json")) as _file:
-    REFERENCE = json.load(_file)
 
 
 def pressure_error(one, order, nodes, pressures):
@@ -79,7 +84,7 @@ def pressure_error(one, order, nodes, pressures):
 
 
 def cpu_of(command):
-    """Exit status, last line of what it said, and CPU seconds of a command; without Open MPI's daemon, whose 0.07 s would be missing here"""
+    """Exit status, last line of what it said, and CPU seconds of a command; without Open MPI's daemon, whose 0.07 s would be missing"""
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:  # also where MPI keeps its session
         with open(os.path.join(folder, "said"), "w+") as said:
             environment = {**os.environ, "TMPDIR": folder, "OMP_NUM_THREADS": "1", "OMPI_MCA_ess_singleton_isolated": "1"}
@@ -109,7 +114,10 @@ class Study:
         if os.path.exists(self.path):
             with open(self.path) as f:
                 for row in csv.DictReader(f):
-                    row = {key: number(value) if key not in Case._fields or key in ("closure", "order") else value for key, value in row.items()}
+                    row = {
+                        key: number(value) if key not in Case._fields or key in ("closure", "order") else value
+                        for key, value in row.items()
+                    }
                     row["order"] = int(row["order"])
                     self.cases.setdefault(Case(*(row[key] for key in Case._fields)), []).append(row)
 
@@ -130,8 +138,8 @@ class Study:
                 least = min(least, row["error.discretisation"])
 
     def mesh(self, case, command, row, least, folder):
-        """A run that ends with the mesh of this line: by a target between its estimate and the least of the meshes before, since with the loop run
-        to its end the estimate is a little different"""
+        """A run that ends with the mesh of this line: by a target between its estimate and the least of the meshes before, since with the
+        loop run to its end the estimate is a little different"""
         paths = [os.path.join(folder, name) for name in ("record", "profile.csv")]
         target = (row["error.discretisation"] * least) ** 0.5
         status, said, cpu = cpu_of([*command, "-adaptor_target", repr(target), "-record", paths[0], "-output_profile", paths[1]])
@@ -142,7 +150,9 @@ class Study:
         nodes, pressures = profile(paths[1])
         line.update(verdict=run["verdict"], cells=int(run["body.lower.cells"] + run["body.upper.cells"]), sweeps=int(run["sweeps"]))
         line.update(P=run["pair.mid.force"], p0=run["pair.mid.pressure_max"], p0_nodal=pressures[0], edge=run["pair.mid.contact_edge"])
-        line.update(pressure_error=f"{pressure_error(reference(case), case.order, nodes, pressures):.3e}", estimate=run["error.discretisation"])
+        line.update(
+            pressure_error=f"{pressure_error(reference(case), case.order, nodes, pressures):.3e}", estimate=run["error.discretisation"]
+        )
         return line
 
     def keep(self, case, rows, done, total):
@@ -216,7 +226,8 @@ def table(cases, study):
 
 
 def limits(study, cases):
-    """Of every limit the case with the fewest unknowns, on the scene and on the others, with the peak pressure of the record and with the nodal one"""
+    """Of every limit the case with the fewest unknowns, on the scene and on the others, with the peak pressure of the record and with the
+    nodal one"""
     yield "\n| where | order | target | limit | unknowns | by | unknowns with nodal p0 | by | |\n|---|---|---|---|---|---|---|---|---|"
     for (order, index), limit in LIMITS.items():
         for key in [SCENE_KEY, *OTHERS]:
@@ -226,7 +237,9 @@ def limits(study, cases):
             if not mine:
                 continue
             for p0 in ("p0", "p0_nodal"):
-                found = [(row["unknowns"], case) for case in mine for row in [met(case, study.cases.get(case, []), TARGETS[index], p0)] if row]
+                found = [
+                    (row["unknowns"], case) for case in mine for row in [met(case, study.cases.get(case, []), TARGETS[index], p0)] if row
+                ]
                 least += [unknowns for unknowns, _ in found]
                 cells += [f"{unknowns:.0f} | {short(case)}" for unknowns, case in [min(found)]] if found else ["- | "]
             where = "the scene" if same else f"closure {key[1]}" if closure else key[2] if key[0] == "equal" else key[0]
@@ -242,14 +255,19 @@ def least(study, cases):
     """Of every target and order the case with the least CPU, and what the peers took"""
     yield "\n| target | order | CPU [s] | meshes | sweeps | unknowns | by | NGSolve: CPU [s] |\n|---|---|---|---|---|---|---|---|"
     for target in TARGETS:
-        ngsolve = [float(row["cum_cpu_s"]) for row in peers("ngsolve", "ZZ") if float(row["err_P"]) <= target[0] and float(row["err_p0"]) <= target[1]]
+        ngsolve = [
+            float(row["cum_cpu_s"])
+            for row in peers("ngsolve", "ZZ")
+            if float(row["err_P"]) <= target[0] and float(row["err_p0"]) <= target[1]
+        ]
         for order in ORDERS:
             mine = [case for case in cases if case[:4] == (*SCENE_KEY, order)]
             found = [(float(row["cpu"]), row, case) for case in mine for row in [met(case, study.cases.get(case, []), target)] if row]
             if found:
                 cpu, row, case = min(found, key=lambda one: one[0])
-                text = f"| {pair(target)} | {order} | {cpu:.2f} | {row['cycle']:.0f} | {row['sweeps']:.0f} | {row['unknowns']:.0f} | {short(case)} | "
-                yield text + (f"{min(ngsolve):.2f} |" if ngsolve else "never |")
+                counts = " | ".join(f"{row[key]:.0f}" for key in ("cycle", "sweeps", "unknowns"))
+                peer = f"{min(ngsolve):.2f}" if ngsolve else "never"
+                yield f"| {pair(target)} | {order} | {cpu:.2f} | {counts} | {short(case)} | {peer} |"
 
 
 def peers(program, *variants):
@@ -282,22 +300,14 @@ def draw(study, folder):
             label = f"order {order}" + (", following" if follow == "yes" else "")
             for axis, column in zip(axes.T, ("unknowns", "cpu")):
                 for k, one in enumerate(axis):
-                    one.loglog([float(row[column]) for row in rows], [errors(case, row)[k] for row in rows], style, color=color, ms=3, lw=1, label=label)
+                    x, y = [float(row[column]) for row in rows], [errors(case, row)[k] for row in rows]
+                    one.loglog(x, y, style, color=color, ms=3, lw=1, label=label)
     for axis, name in zip(axes, ("error of P", "error of $p_0$")):
         axis[0].set(xlabel="unknowns of both bodies", ylabel=name)
         axis[1].set(xlabel="CPU seconds, all meshes (Abut: with start-up)")
     axes[0, 1].legend(frameon=False, fontsize=7, loc="lower right")
     for kind in ("png", "svg"):
         figure.savefig(os.path.join(folder, f"accuracy.{kind}"), dpi=150, metadata={"Date": None} if kind == "svg" else None)
-
-
-PEERS = {"ngsolve": ("ZZ",), "dealii": ("Kelly",), "getfem": ("ALM", "pen"), "kratos": ("ALM",)}
-BEST = ("residual", "bulk .5")  # what the limits speak of, and the plot shows
-
-
-HEAD = """In every field: unknowns of both bodies, meshes, sweeps, CPU seconds of the whole process, relative error of the edge and of the nodal pressures
-in L2, all of the first mesh from which on every mesh meets the target for the relative errors of (P, p0).
-The fixed reference load took {:.3f} s of CPU."""
 
 
 def main():
@@ -311,7 +321,9 @@ def main():
     args = parser.parse_args()
     os.makedirs(args.out, exist_ok=True)
     study = Study(args)
-    main_cases = [Case(*SCENE_KEY, *rest) for rest in ((o, e, m, f) for o in ORDERS for e in ESTIMATORS for m in MARKINGS for f in FOLLOWING)]
+    main_cases = [
+        Case(*SCENE_KEY, *rest) for rest in ((o, e, m, f) for o in ORDERS for e in ESTIMATORS for m in MARKINGS for f in FOLLOWING)
+    ]
     others = [Case(*key, *rest) for rest in OTHERS_BY for key in OTHERS]
     if args.quick:
         main_cases, others = [case for case in main_cases if (case.estimator, case.marking) == BEST and case.follow == "yes"], []
