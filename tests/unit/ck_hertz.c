@@ -181,8 +181,8 @@ START_TEST(cells_far_from_squares_are_no_worse_than_squares)
   } meshes[] = {
     {12, 10  },
     {4,  100 },
-    {1,  573 },
-    {1,  1000}
+    {2,  573 },
+    {2,  1000}
   };
 
   for (PetscInt k = 0; k < 4; ++k) {
@@ -190,8 +190,10 @@ START_TEST(cells_far_from_squares_are_no_worse_than_squares)
     const Errors   square = Solve(n, n, (AbutShape)_i, PETSC_FALSE);
 
     for (PetscInt along = 0; along < 2; ++along) {
-      const Errors e = Solve(along ? m : n, along ? n : m, (AbutShape)_i, PETSC_FALSE);
+      Errors e;
 
+      if (along && m > 1200) continue; /* the contact of so many nodes takes minutes */
+      e = Solve(along ? m : n, along ? n : m, (AbutShape)_i, PETSC_FALSE);
       printf("%s, %d by %d: energy %.4f %.4f, pressure %.4f; squares %.4f %.4f, %.4f; %d sweeps\n", _i ? "triangles" : "quads",
              (int)(along ? m : n), (int)(along ? n : m), (double)e.energy[0], (double)e.energy[1], (double)e.pressure,
              (double)square.energy[0], (double)square.energy[1], (double)square.pressure, (int)e.sweeps);
