@@ -101,9 +101,9 @@ static PetscErrorCode AbutSceneFreeNames_Private(PetscInt n, char *names[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the loop leaves moves the edges that the next meshes follow: on two layers of order 4, some 4000 unknowns, it puts the force off by
-   7e-6 with a tenth of the estimated error, by 3e-7 with 0.03, which takes about a sweep more on each mesh */
-#define ABUT_SHARE_FOLLOWING 0.03
+/* What the loop leaves moves the edges that the next meshes follow: on two layers of order 4, some 3500 unknowns, a tenth of the estimated
+   error puts the force off by 7e-6, 0.03 by 1.4e-7, and 0.003 by 1.0e-7 as does less; each step takes about a sweep more on a mesh */
+#define ABUT_SHARE_FOLLOWING 0.003
 
 /* How far and from where the loop is to run on meshes that are going to be refined; keys that would have no effect stay unread, and so
    are errors */
@@ -140,7 +140,7 @@ static PetscErrorCode AbutSceneCyclesFromOptions_Private(AbutScene scene)
 .  -scene_probes <names>   - points of the record: `-NAME_probe_body`, `-NAME_probe_point x,y`
 .  -scene_interleave       - one sweep and one adaptation a cycle, Fig. 2 of the paper; needs ddneumann
 .  -scene_loop_share <0.3>  - with an adaptor and ddactive: part of the estimated error that the loop may leave on a mesh to be refined; 0:
-                              none; 0.03 by default where meshes follow edges (`-adaptor_follow`)
+                              none; 0.003 by default where meshes follow edges (`-adaptor_follow`)
 .  -record_time_ratio       - measures the processor time of the run in linear problems on its last mesh: `time.ratio`
 .  -scene_cold              - with an adaptor: every mesh begins without the traces and forces of the last one
 .  -scene_eps_u <0.0015>   - with it: the relative change of the traces at which the run ends

@@ -23,6 +23,7 @@ MARKINGS = {
     "bulk .5": "-adaptor_bulk 0.5",
     "bulk .7": "-adaptor_bulk 0.7",
     "bulk .7, jump 2": "-adaptor_bulk 0.7 -adaptor_jump 2",
+    "bulk .6, jump 3": "-adaptor_bulk 0.6 -adaptor_jump 3",
     "bulk .7, jump 3": "-adaptor_bulk 0.7 -adaptor_jump 3",
 }
 FOLLOWING = ("yes", "no")
