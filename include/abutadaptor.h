@@ -31,6 +31,7 @@ PETSC_EXTERN PetscErrorCode AbutAdaptorGetTarget(AbutAdaptor, PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutAdaptorGetAllowances(AbutAdaptor, PetscInt, AbutBody[], Vec[], const PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutAdaptorSetAllowance(AbutAdaptor, PetscReal);
 PETSC_EXTERN PetscErrorCode AbutAdaptorGetLevels(AbutAdaptor, PetscInt *, PetscInt *);
+PETSC_EXTERN PetscErrorCode AbutAdaptorGetMaxUnknowns(AbutAdaptor, PetscInt *);
 PETSC_EXTERN PetscErrorCode AbutAdaptorFollows(AbutAdaptor, PetscInt, PetscBool *);
 PETSC_EXTERN PetscErrorCode AbutAdaptorGetBodies(AbutAdaptor, PetscInt *, const char *const *[]);
 PETSC_EXTERN PetscErrorCode AbutAdaptorMark(AbutAdaptor, AbutBody, Vec, PetscBool[], PetscInt *, AbutAdaptVerdict *);

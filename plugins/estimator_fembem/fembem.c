@@ -155,7 +155,8 @@ static PetscErrorCode AbutEstimatorCreate_Fembem(AbutEstimator est)
 
    Options Database Keys:
 +  -estimator_fembem_solve <auto>           - `galerkin` solves the boundary elements' problem; `none` takes u and t of the finite elements;
-                                              `auto` is `galerkin` for up to 300 boundary elements of a body, `none` above
+                                              `auto` is `galerkin` for up to 300 boundary elements of a body, of order p each
+                                              counted p times, `none` above
 .  -estimator_fembem_tree_tolerance <real>  - relative error of the treecode that evaluates stresses; 0 sums directly; by default 1e-4 at
                                               order 1, 1e-6, 1e-8 and 1e-10 at orders 2 to 4
 -  -estimator_fembem_max_elements <4000>    - boundary elements up to which the dense system of `galerkin` is solved; one of order p counts

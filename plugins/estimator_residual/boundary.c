@@ -1,7 +1,7 @@
 #include "residual.h"
 
-/* Sides on the boundary: h/p |t - s n|^2, h the height of the cell above the side, in the components where no displacement is given. There t is the given traction, in its L2
-   projection on the elements, or that of the contact pressure. */
+/* Sides on the boundary: h/p |t - s n|^2, h the height of the cell above the side, in the components where no displacement is given.
+   There t is the given traction, in its L2 projection on the elements, or that of the contact pressure. */
 
 /* Which boundary element each local element side on the boundary is */
 static PetscErrorCode FindElements(AbutBody body, const AbutMeshTopology *t, const AbutBoundary *b, PetscInt element[])
@@ -46,8 +46,8 @@ static PetscBool IsContact(const AbutBoundary *b, PetscInt e)
 }
 
 /* The contact pressure -p n at the nodes of element e from the nodal contact forces f: lumped, p = -f.n / D with D the integral of the
-   node's function. At a node between two elements in contact one force is that of both: D is the sum, as far as they have one normal; across
-   a corner of 90 degrees pressures do not mix. */
+   node's function. At a node between two elements in contact one force is that of both: D is the sum, as far as they have one normal;
+   across a corner of 90 degrees pressures do not mix. */
 static void SetContactTraction(const AbutBoundary *b, PetscInt e, PetscInt previous, const PetscReal w[], PetscReal traction[])
 {
   PetscReal n[2], m[2], length = GetNormal(b, e, n);

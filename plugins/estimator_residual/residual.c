@@ -2,7 +2,8 @@
 #include <petscdt.h>
 
 /*MC
-   ABUTESTIMATORRESIDUAL - "residual": what the finite-element stress leaves of equilibrium, in the cells, across their sides, on the boundary
+   ABUTESTIMATORRESIDUAL - "residual": what the finite-element stress leaves of equilibrium, in the cells, across their sides, on the
+   boundary
 
    Options Database Key:
 .  -estimator_residual_constant <0.25 for quads, 0.3 for triangles> - what the residual is multiplied by to be an estimate of the error
@@ -10,8 +11,8 @@
    Level: beginner
 
    Notes:
-   With p the order, n the outward normal, h the height of the cell above a side of it, the residual res_e of a cell e is the root of the sum
-   of
+   With p the order, n the outward normal, h the height of the cell above a side of it, the residual res_e of a cell e is the root of the
+   sum of
 
      (h/p)^2 ||div s||^2 over the cell, h the largest of its heights;
      1/2 h/p ||[s n]||^2 over its sides inside the body, the coarse cell above hanging sides as well;
@@ -21,9 +22,9 @@
    pressure. The pressure comes from the nodal contact forces: force over the integral of the node's function, interpolated.
 
    eta_e is C res_e in the scale of eq. (27): relative to the root mean square of the stress. R. Verfuerth, A review of a posteriori error
-   estimation and adaptive mesh-refinement techniques (1996); with contact P. Hild and S. Nicaise, Residual a posteriori error estimators for
-   contact problems in elasticity, ESAIM: M2AN 41 (2007); powers of p as in J. M. Melenk and B. I. Wohlmuth, On residual-based a posteriori
-   error estimation in hp-FEM, Adv. Comput. Math. 15 (2001).
+   estimation and adaptive mesh-refinement techniques (1996); with contact P. Hild and S. Nicaise, Residual a posteriori error estimators
+   for contact problems in elasticity, ESAIM: M2AN 41 (2007); powers of p as in J. M. Melenk and B. I. Wohlmuth, On residual-based a
+   posteriori error estimation in hp-FEM, Adv. Comput. Math. 15 (2001).
 
    The theory leaves the constant open; C is from measurements. Estimate over true error of the stress, quads of orders 1 to 4 and triangles
    of orders 1 to 3, smooth solution, cells of side 1/4 to 1/16: .84-.88, .89-.91, 1.14-1.19, 1.09 and .85-.89, .93-.94, 1.19-1.22. Where

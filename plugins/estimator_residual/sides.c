@@ -1,7 +1,7 @@
 #include "residual.h"
 
-/* Jumps of the traction across the sides inside a body: 1/2 h/p |[s n]|^2 for each of the two cells, h its height above the side. The coarse
-   cell above a hanging side has a jump on each half of its side. */
+/* Jumps of the traction across the sides inside a body: 1/2 h/p |[s n]|^2 for each of the two cells, h its height above the side. The
+   coarse cell above a hanging side has a jump on each half of its side. */
 
 PetscErrorCode ResidualGetTraction(AbutBody body, PetscInt c, PetscInt k, PetscReal from, PetscReal to, const ResidualRule *rule,
                                    PetscReal traction[])

@@ -42,9 +42,9 @@ void AbutPatchAdd_Private(const AbutPatchSpace *space, const PetscReal d[2], con
   m[space->coefs] += s[0] * s[0] + s[1] * s[1] + 2. * s[2] * s[2];
 }
 
-/* The factor of the normal equations; a term that the samples do not tell apart from those before it is left out. The test is relative to the
-   term itself, so that neither it nor round-off depend on the unit of length. At order 4 the last term keeps 1.5e-3 of itself over four equal
-   cells, and 5e-5 where two are half as wide and two half as high; what cannot be told leaves 1e-14. */
+/* The factor of the normal equations; a term that the samples do not tell apart from those before it is left out. The test is relative
+   to the term itself, so that neither it nor round-off depend on the unit of length. At order 4 the last term keeps 1.5e-3 of itself
+   over four equal cells, and 5e-5 where two are half as wide and two half as high; what cannot be told leaves 1e-14. */
 static void AbutPatchFactor_Private(const AbutPatchSpace *space, const PetscReal m[], PetscReal L[][ABUT_PATCH_TERMS_MAX], PetscBool out[])
 {
   const PetscReal apart = space->order == 1 ? 1e-3 : 1e-9;
@@ -89,8 +89,8 @@ void AbutPatchFit_Private(const AbutPatchSpace *space, const PetscReal m[], Pets
   }
 }
 
-/* The same polynomials about an origin moved by d: x^i becomes the sum of binomial(i,k) d^(i-k) x^k */
-void AbutPatchShift_Private(const AbutPatchSpace *space, const PetscReal a[], const PetscReal d[2], PetscReal b[])
+/* The same polynomials about an origin moved by d: x^i becomes the sum of binomial(i,k) d^(i-k) x^k; of a, the terms of up to a degree in each coordinate */
+void AbutPatchShift_Private(const AbutPatchSpace *space, PetscInt degree, const PetscReal a[], const PetscReal d[2], PetscReal b[])
 {
   static const PetscReal binomial[5][5] = {
     {1., 0., 0., 0., 0.},
@@ -108,7 +108,7 @@ void AbutPatchShift_Private(const AbutPatchSpace *space, const PetscReal a[], co
       const PetscInt *from = space->power[i], *to = space->power[k];
       PetscReal       f;
 
-      if (to[0] > from[0] || to[1] > from[1]) continue;
+      if (to[0] > from[0] || to[1] > from[1] || from[0] > degree || from[1] > degree) continue;
       f = binomial[from[0]][to[0]] * binomial[from[1]][to[1]] * power[0][from[0] - to[0]] * power[1][from[1] - to[1]];
       for (PetscInt s = 0; s < 3; ++s) b[space->terms * s + k] += f * a[space->terms * s + i];
     }

@@ -16,6 +16,6 @@ typedef struct {
 PETSC_INTERN void      AbutPatchSpaceSetUp_Private(PetscInt, PetscInt, AbutPatchSpace *);
 PETSC_INTERN void      AbutPatchAdd_Private(const AbutPatchSpace *, const PetscReal[2], const PetscReal[3], PetscReal[]);
 PETSC_INTERN void      AbutPatchFit_Private(const AbutPatchSpace *, const PetscReal[], PetscReal[], PetscBool *);
-PETSC_INTERN void      AbutPatchShift_Private(const AbutPatchSpace *, const PetscReal[], const PetscReal[2], PetscReal[]);
+PETSC_INTERN void      AbutPatchShift_Private(const AbutPatchSpace *, PetscInt, const PetscReal[], const PetscReal[2], PetscReal[]);
 PETSC_INTERN void      AbutPatchEvaluate_Private(const AbutPatchSpace *, const PetscReal[], const PetscReal[2], PetscReal[3]);
 PETSC_INTERN PetscReal AbutPatchWeight_Private(const AbutPatchSpace *, const PetscReal[], const PetscReal[]);

@@ -51,7 +51,10 @@ static PetscErrorCode AbutPatchesFit_Private(const AbutMeshTopology *t, PetscBoo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Every vertex without a fit takes the mean of those it shares a cell with; tells how many that helped and how many are left */
+/* Every vertex without a fit takes the mean of those it shares a cell with; tells how many that helped and how many are left. From order 2
+   on only cells without a fit at any corner ask what is handed on (see AbutPatchesAddNode_Private()). Such quads stand beside smaller ones,
+   several cells away from the samples, where a polynomial of high degree means nothing: what is linear is handed on. Such triangles are
+   those in corners, as small as their neighbours. */
 static PetscErrorCode AbutPatchesSpread_Private(AbutMesh mesh, const AbutMeshTopology *t, AbutPatches *p, PetscInt *helped, PetscInt *left)
 {
   const PetscInt n = p->space.coefs, bs = n + 1;
@@ -66,7 +69,7 @@ static PetscErrorCode AbutPatchesSpread_Private(AbutMesh mesh, const AbutMeshTop
     const PetscReal d[2] = {t->x[2 * to] - t->x[2 * from], t->x[2 * to + 1] - t->x[2 * from + 1]};
 
     if (t->unknown[to] < 0 || !p->done[from] || p->done[to]) continue;
-    AbutPatchShift_Private(&p->space, p->coef + n * from, d, moved);
+    AbutPatchShift_Private(&p->space, t->corners == 4 ? 1 : t->order, p->coef + n * from, d, moved);
     for (PetscInt m = 0; m < n; ++m) sum[bs * to + m] += moved[m];
     sum[bs * to + n] += 1.;
   }
@@ -97,8 +100,8 @@ static void AbutHats_Private(PetscInt corners, const PetscReal xi[2], PetscReal 
   hat[3] = corners == 3 ? 0. : (1. - x) * y;
 }
 
-/* Adds to sum[4] what the corners of cell c say of its node k: weight times stress, weight. First, only corners with a fit of their own speak,
-   each as loud as its hat is high or, if no such hat reaches the node, all alike. */
+/* Adds to sum[4] what the corners of cell c say of its node k: weight times stress, weight. First, only corners with a fit of their own
+   speak, each as loud as its hat is high or, if no such hat reaches the node, all alike. */
 static void AbutPatchesAddNode_Private(const AbutMeshTopology *t, const AbutPatches *p, PetscInt c, PetscInt k, const PetscReal xi[2],
                                        PetscBool any, PetscReal sum[4])
 {
@@ -123,8 +126,8 @@ static void AbutPatchesAddNode_Private(const AbutMeshTopology *t, const AbutPatc
   }
 }
 
-/* The recovered stress at the nodes; it is continuous: a hanging node takes the function of its coarse side. To ask the corners of its cells
-   instead measured the same. */
+/* The recovered stress at the nodes; it is continuous: a hanging node takes the function of its coarse side. To ask the corners of its
+   cells instead measured the same. */
 static PetscErrorCode AbutPatchesEvaluate_Private(AbutBody body, AbutMesh mesh, const AbutMeshTopology *t, const AbutPatches *p,
                                                   PetscReal s[])
 {

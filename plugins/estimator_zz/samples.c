@@ -1,7 +1,8 @@
 #include "samples.h"
 #include <petscdt.h>
 
-/* Orthonormal polynomials on the reference cell at one point: of degree order-1 in each coordinate on quads, of degree order-2 on triangles */
+/* Orthonormal polynomials on the reference cell at one point: of degree order-1 in each coordinate on quads, of degree order-2 on
+   triangles */
 static PetscErrorCode AbutLowPolynomials_Private(const AbutMeshTopology *t, const PetscReal xi[2], PetscInt *n, PetscReal phi[])
 {
   const PetscInt degree[ABUT_ORDER_MAX] = {0, 1, 2, 3}, p = t->order;

@@ -11,17 +11,17 @@
    vertex inside the body polynomials (x^i y^j with i, j <= p for quads, with i+j <= p for triangles) are fitted to the samples in the cells
    that have the vertex as a corner. Their values at a node of a cell, weighed with the bilinear functions of the corners, are the recovered
    stress of the node: T. Blacker and T. Belytschko, Superconvergent patch recovery with equilibrium and conjoint interpolant enhancements,
-   Int. J. Numer. Meth. Engng. 37 (1994). Corners on the boundary have no polynomials; a hanging node takes the function of its coarse side. Between nodes
-   the shape functions interpolate.
+   Int. J. Numer. Meth. Engng. 37 (1994). Corners on the boundary have no polynomials; a hanging node takes the function of its coarse side.
+   Between nodes the shape functions interpolate.
 
-   From order 2 on, a polynomial also weighs the less, the farther it is from its samples, and the samples keep their values in the recovered
-   stress (in triangles its part of degree p-2): beside the edge of a contact the patches alone would claim many times the error.
+   From order 2 on, a polynomial also weighs the less, the farther it is from its samples, and the samples keep their values in the
+   recovered stress (in triangles its part of degree p-2): beside the edge of a contact the patches alone would claim many times the error.
 
    Cheap, local, and for any material law: nothing is solved.
 
-   Limits: at a singularity of the stress uniform meshes of order 1 are judged up to a quarter too well, quads of higher orders up to a sixth,
-   triangles of order 3 up to a fifth too badly. Cells beside a hanging side are judged too well (order 2 by a third, 3 by a half, 4 by two
-   thirds): what its constraint spoils, the samples share. A body of one row of cells is judged along the row only.
+   Limits: at a singularity of the stress uniform meshes of order 1 are judged up to a quarter too well, quads of higher orders up to a
+   sixth, triangles of order 3 up to a fifth too badly. Cells beside a hanging side are judged too well (order 2 by a third, 3 by a half, 4
+   by two thirds): what its constraint spoils, the samples share. A body of one row of cells is judged along the row only.
 
 .seealso: `AbutEstimatorSetType()`, `AbutEstimatorCompareStress()`, `ABUTESTIMATORFEMBEM`
 M*/

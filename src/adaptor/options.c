@@ -157,6 +157,28 @@ PetscErrorCode AbutAdaptorGetLevels(AbutAdaptor adaptor, PetscInt *jump, PetscIn
 }
 
 /*@
+   AbutAdaptorGetMaxUnknowns - The cap on the unknowns of one body
+
+   Not Collective
+
+   Input Parameter:
+.  adaptor - the adaptor
+
+   Output Parameter:
+.  most - no refinement that would pass it
+
+   Level: developer
+
+.seealso: `AbutAdaptorMark()`, `AbutAdaptorGetLevels()`
+@*/
+PetscErrorCode AbutAdaptorGetMaxUnknowns(AbutAdaptor adaptor, PetscInt *most)
+{
+  PetscFunctionBegin;
+  *most = adaptor->max_unknowns;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
    AbutAdaptorFollows - Whether meshes are to move with the edges of the contacts
 
    Not Collective

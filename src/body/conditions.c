@@ -101,7 +101,7 @@ PetscErrorCode AbutBodySetDisplacement(AbutBody body, const char side[], PetscIn
    Level: intermediate
 
    Note:
-   Integrated element side by element side with 16 points that crowd at the ends, so that a kink or a root at a node does no harm.
+   Integrated element side by element side with 16 points or more that crowd at the ends, so that a kink or a root at a node does no harm.
 
 .seealso: `AbutBodySetDisplacement()`, `AbutBodySetUp()`
 @*/

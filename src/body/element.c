@@ -92,8 +92,8 @@ static void AbutStiffnessAffine_Private(const AbutElement e, const PetscReal J[4
     }
 }
 
-/* With the mean of the dilatation in place of the dilatation, a quad of order 1 does not lock at Poisson's ratios near 1/2 (J. C. Nagtegaal,
-   D. M. Parks, J. R. Rice, Comput. Methods Appl. Mech. Engrg. 4, 1974) */
+/* With the mean of the dilatation in place of the dilatation, a quad of order 1 does not lock at Poisson's ratios near 1/2 (J. C.
+   Nagtegaal, D. M. Parks, J. R. Rice, Comput. Methods Appl. Mech. Engrg. 4, 1974) */
 static PetscErrorCode AbutStiffnessQuadrature_Private(AbutBody body, PetscInt c, PetscReal lambda, PetscReal K[])
 {
   const AbutElement e    = body->element;
@@ -184,11 +184,11 @@ PetscErrorCode AbutCellDilatation_Private(AbutBody body, PetscInt c, PetscReal *
    Level: intermediate
 
    Notes:
-   Quads of order 1 above a Poisson's ratio of 0.49 take the mean, and higher orders need none. The area of a triangle of order 1 has to stay as
-   it is when its material is incompressible, and in a whole mesh this leaves next to no motion: take order 2 or quads.
+   Quads of order 1 above a Poisson's ratio of 0.49 take the mean, and higher orders need none. The area of a triangle of order 1 has to
+   stay as it is when its material is incompressible, and in a whole mesh this leaves next to no motion: take order 2 or quads.
 
-   The nearer to 1/2, the worse the condition of any of them: conjugate gradients with BoomerAMG took 8 iterations at 0.3, 142 at 0.499 and 412
-   at 0.49999 on 64 x 16 quads. The direct solver, `-NAME_ksp_type preonly -NAME_pc_type cholesky`, does not mind.
+   The nearer to 1/2, the worse the condition of any of them: conjugate gradients with BoomerAMG took 8 iterations at 0.3, 142 at 0.499 and
+   412 at 0.49999 on 64 x 16 quads. The direct solver, `-NAME_ksp_type preonly -NAME_pc_type cholesky`, does not mind.
 
 .seealso: `AbutBodySetMaterial()`, `AbutBodyGetCellStress()`
 @*/

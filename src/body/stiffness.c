@@ -1,6 +1,7 @@
 #include <abut/private/bodyimpl.h> /*I "abutbody.h" I*/
 
-/* Assembly of the element matrices. Hanging unknowns are replaced by their anchors in the index list, with weights in the element matrix. */
+/* Assembly of the element matrices. Hanging unknowns are replaced by their anchors in the index list, with weights in the element
+   matrix. */
 
 #define ABUT_CELL_ANCHORS_MAX (ABUT_CELL_NODES_MAX + 2 * ABUT_SIDE_NODES_MAX) /* at most two sides of a cell hang */
 

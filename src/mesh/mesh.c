@@ -213,6 +213,7 @@ PetscErrorCode AbutMeshSetUp(AbutMesh mesh)
   if (mesh->setupcalled) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(mesh->boxset, PetscObjectComm((PetscObject)mesh), PETSC_ERR_ARG_WRONGSTATE,
              "Call AbutMeshSetBox() or AbutMeshSetFromOptions() first");
+  PetscCall(AbutMeshSetOrder(mesh, mesh->order)); /* the shape may have come later */
   mesh->setupcalled = PETSC_TRUE;
   PetscCall((mesh->shape == ABUT_QUAD ? AbutMeshCreate_Forest : AbutMeshCreate_Triangles)(mesh));
   PetscUseTypeMethod(mesh, create, &dm);

@@ -129,8 +129,8 @@ static PetscErrorCode AbutNodesFindForeign_Private(AbutMesh mesh, PetscInt npoin
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Hanging nodes carry no unknowns. Owned nodes come first, then those of other ranks; in both, vertices, then those inside sides, then those
-   inside cells, each in the order of the DMPLEX. */
+/* Hanging nodes carry no unknowns. Owned nodes come first, then those of other ranks; in both, vertices, then those inside sides, then
+   those inside cells, each in the order of the DMPLEX. */
 static PetscErrorCode AbutNodesNumber_Private(AbutMesh mesh, const AbutStratum s[3])
 {
   MPI_Comm          comm = PetscObjectComm((PetscObject)mesh);

@@ -97,7 +97,7 @@ PetscErrorCode AbutPairComputePressure(AbutPair pair, const PetscReal u1[], cons
 -  p    - [nodes of the pressure side] pressures, stress
 
    Output Parameters:
-+  f1 - [n1] integrals of the pressure against the hat functions of the first side, stress times length
++  f1 - [n1] integrals of the pressure against the functions of the first side's nodes, stress times length
 -  f2 - [n2] the same on the second side
 
    Level: intermediate

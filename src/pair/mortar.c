@@ -33,7 +33,6 @@ static PetscErrorCode AbutPairChoosePressureSide_Private(AbutPair pair)
   PetscReal young[2], poisson[2], modulus[2];
 
   PetscFunctionBegin;
-
   pair->which = pair->pressureside == ABUT_PRESSURE_SECOND;
   if (pair->pressureside != ABUT_PRESSURE_FINER) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; k < 2; ++k) {

@@ -3,44 +3,84 @@
 
 /* The contact pressure as a function on the pressure side, out of the nodal forces */
 
-/* M += integrals of products of the functions of element e over the part that both sides share; the lower band of AbutSolveBand() */
-static PetscErrorCode AbutPairAddMass_Private(AbutPair pair, PetscInt e, PetscReal M[])
+/* The system for the values at the nodes: the mass matrix of the elements that the other side covers whole, in the lower band of
+   AbutSolveBand(), and their part of the nodal forces */
+typedef struct {
+  PetscInt   order, n;
+  PetscReal *M, *force;
+  PetscBool *known; /* [n] the value is given: 0 at open nodes and where the other side does not reach, and beside elements covered in
+                       part, where the matrix would be close to singular, the nodal pressure itself */
+} AbutRecovery;
+
+static PetscBool AbutPairCoversElement_Private(AbutPair pair, PetscInt e, PetscReal *h)
 {
   const AbutSide  *m = pair->nodes[pair->which];
-  const PetscInt   n = pair->order[0] + 1, first = pair->order[0] * e;
-  const PetscReal *a = m->x + 2 * first, *b = a + 2 * pair->order[0];
-  const PetscReal  h   = PetscSqrtReal(PetscSqr(b[0] - a[0]) + PetscSqr(b[1] - a[1])),
-                  from = PetscSqrtReal(PetscSqr(a[0] - m->x[0]) + PetscSqr(a[1] - m->x[1]));
-  const PetscReal s[2] = {PetscMax(0., (pair->overlap[0] - from) / h), PetscMin(1., (pair->overlap[1] - from) / h)};
-  PetscReal       N[ABUT_SIDE_NODES_MAX], z[ABUT_SIDE_NODES_MAX], w[ABUT_SIDE_NODES_MAX];
+  const PetscReal *a = m->x + 2 * pair->order[0] * e, *b = a + 2 * pair->order[0];
+  const PetscReal  from = PetscSqrtReal(PetscSqr(a[0] - m->x[0]) + PetscSqr(a[1] - m->x[1]));
+
+  *h = PetscSqrtReal(PetscSqr(b[0] - a[0]) + PetscSqr(b[1] - a[1]));
+  return (PetscBool)(from > pair->overlap[0] - 1e-9 * *h && from + *h < pair->overlap[1] + 1e-9 * *h);
+}
+
+static PetscErrorCode AbutRecoveryAddElement_Private(AbutRecovery *r, PetscInt e, PetscReal h)
+{
+  const PetscInt n = r->order + 1, first = r->order * e;
+  PetscReal      N[ABUT_SIDE_NODES_MAX], z[ABUT_SIDE_NODES_MAX], w[ABUT_SIDE_NODES_MAX];
 
   PetscFunctionBegin;
-  if (s[1] <= s[0]) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscDTGaussQuadrature(n, s[0], s[1], z, w));
+  PetscCall(PetscDTGaussQuadrature(n, -1., 1., z, w));
   for (PetscInt q = 0; q < n; ++q) {
-    PetscCall(AbutEvaluateLobatto(pair->order[0], 2. * z[q] - 1., N, NULL));
+    PetscCall(AbutEvaluateLobatto(r->order, z[q], N, NULL));
     for (PetscInt j = 0; j < n; ++j)
-      for (PetscInt i = j; i < n; ++i) M[n * (first + j) + i - j] += w[q] * h * N[i] * N[j];
+      for (PetscInt i = j; i < n; ++i) r->M[n * (first + j) + i - j] += 0.5 * w[q] * h * N[i] * N[j];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Open nodes leave the system, and those beyond the part that both sides share: their rows and columns are those of the unit matrix. A node
-   that carries no pressure, for example at a held end, has a value all the same. */
-static void AbutPairKeepClosed_Private(PetscInt order, PetscInt n, const PetscReal D[], const PetscReal p[], PetscReal M[],
-                                       PetscReal force[], PetscBool out[])
+static PetscErrorCode AbutRecoverySetUp_Private(AbutPair pair, const PetscReal p[], AbutRecovery *r)
 {
-  for (PetscInt i = 0; i < n; ++i) out[i] = (PetscBool)((D[i] > 0. && p[i] <= 0.) || M[(order + 1) * i] <= 0.);
-  for (PetscInt j = 0; j < n; ++j) {
-    for (PetscInt i = j; i <= PetscMin(j + order, n - 1); ++i)
-      if (out[i] || out[j]) M[(order + 1) * j + i - j] = i == j ? 1. : 0.;
-    if (out[j]) force[j] = 0.;
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < r->n; ++i) r->known[i] = (PetscBool)(pair->D[i] > 0. && p[i] <= 0.);
+  for (PetscInt e = 0; r->order * e + 1 < r->n; ++e) {
+    PetscReal h;
+
+    if (AbutPairCoversElement_Private(pair, e, &h)) PetscCall(AbutRecoveryAddElement_Private(r, e, h));
+    else
+      for (PetscInt i = 0; i <= r->order; ++i) r->known[r->order * e + i] = PETSC_TRUE;
+  }
+  for (PetscInt g = 0; g < pair->nsegments; ++g) {
+    const AbutSegment *seg   = &pair->segment[g];
+    const PetscInt     first = r->order * seg->element[0];
+    PetscReal          h;
+
+    if (!AbutPairCoversElement_Private(pair, seg->element[0], &h)) continue;
+    for (PetscInt i = 0; i <= r->order; ++i)
+      for (PetscInt j = 0; j <= r->order; ++j) r->force[first + j] += seg->M[0][i][j] * p[first + i];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What is known goes to the right-hand side; its rows and columns become those of the unit matrix */
+static void AbutRecoveryEliminate_Private(const AbutRecovery *r, const PetscReal p[])
+{
+  for (PetscInt j = 0; j < r->n; ++j)
+    for (PetscInt i = j + 1; i <= PetscMin(j + r->order, r->n - 1); ++i) {
+      PetscReal *m = &r->M[(r->order + 1) * j + i - j];
+
+      if (r->known[i] && !r->known[j]) r->force[j] -= *m * p[i];
+      if (r->known[j] && !r->known[i]) r->force[i] -= *m * p[j];
+      if (r->known[i] || r->known[j]) *m = 0.;
+    }
+  for (PetscInt j = 0; j < r->n; ++j) {
+    if (!r->known[j]) continue;
+    r->M[(r->order + 1) * j] = 1.;
+    r->force[j]              = p[j];
   }
 }
 
 /*@C
    AbutPairRecoverPressure - The consistent pressure: the function on the pressure side that vanishes at open nodes and whose integrals with
-   the functions of the closed ones are the nodal contact forces
+   the functions of the closed ones are the nodal contact forces; on elements that the other side covers in part, the nodal pressures
 
    Not Collective
 
@@ -62,17 +102,14 @@ static void AbutPairKeepClosed_Private(PetscInt order, PetscInt n, const PetscRe
 @*/
 PetscErrorCode AbutPairRecoverPressure(AbutPair pair, const PetscReal p[], PetscReal q[])
 {
-  const PetscInt order = pair->order[0], n = pair->n[pair->which];
-  PetscReal     *M, *f[2];
-  PetscBool     *out;
+  AbutRecovery r = {.order = pair->order[0], .n = pair->n[pair->which], .force = q};
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc4((order + 1) * n, &M, pair->n[0], &f[0], pair->n[1], &f[1], n, &out));
-  PetscCall(AbutPairComputeForce(pair, p, f[0], f[1]));
-  PetscCall(PetscArraycpy(q, f[pair->which], n));
-  for (PetscInt e = 0; order * e + 1 < n; ++e) PetscCall(AbutPairAddMass_Private(pair, e, M));
-  AbutPairKeepClosed_Private(order, n, pair->D, p, M, q, out);
-  PetscCall(AbutSolveBand(n, order, M, 1, q));
-  PetscCall(PetscFree4(M, f[0], f[1], out));
+  PetscCall(PetscCalloc2((r.order + 1) * r.n, &r.M, r.n, &r.known));
+  PetscCall(PetscArrayzero(q, r.n));
+  PetscCall(AbutRecoverySetUp_Private(pair, p, &r));
+  AbutRecoveryEliminate_Private(&r, p);
+  PetscCall(AbutSolveBand(r.n, r.order, r.M, 1, q));
+  PetscCall(PetscFree2(r.M, r.known));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

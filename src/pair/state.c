@@ -31,6 +31,7 @@ static PetscErrorCode AbutPairReadPressures_Private(AbutPair pair, const PetscRe
     state->consistent = PETSC_TRUE;
   }
   for (PetscInt i = 0; i < n; ++i) {
+    if (pair->D[i] <= 0.) continue;
     state->pressure_max = PetscMax(state->pressure_max, read[i]);
     state->pressure_min = PetscMin(state->pressure_min, p[i]);
   }
@@ -62,7 +63,7 @@ static PetscErrorCode AbutPairReadPressures_Private(AbutPair pair, const PetscRe
 @*/
 PetscErrorCode AbutPairGetState(AbutPair pair, const PetscReal u1[], const PetscReal u2[], const PetscReal p[], AbutPairState *state)
 {
-  PetscReal     *g = pair->work, *f[2], sum[2] = {0., 0.}, compliance[2];
+  PetscReal     *g = pair->work, *f[2], sum[2] = {0., 0.}, compliance[2], largest = 0.; /* nodal pressure */
   const PetscInt n = pair->n[pair->which];
 
   PetscFunctionBegin;
@@ -71,6 +72,7 @@ PetscErrorCode AbutPairGetState(AbutPair pair, const PetscReal u1[], const Petsc
   for (PetscInt i = 0; i < n; ++i) {
     if (pair->D[i] <= 0.) continue;
     ++state->nodes;
+    largest = PetscMax(largest, p[i]);
     state->force += p[i] * pair->D[i];
     state->energy += 0.5 * pair->theta * p[i] * p[i] * pair->D[i];
     state->penetration_max = PetscMax(state->penetration_max, g[i]);
@@ -82,7 +84,7 @@ PetscErrorCode AbutPairGetState(AbutPair pair, const PetscReal u1[], const Petsc
   }
   PetscCall(AbutPairReadPressures_Private(pair, p, state));
   PetscCall(AbutPairGetCompliance(pair, compliance));
-  if (state->pressure_max > 0.) state->complementarity /= (compliance[0] + compliance[1] + pair->theta) * PetscSqr(state->pressure_max);
+  if (largest > 0.) state->complementarity /= (compliance[0] + compliance[1] + pair->theta) * PetscSqr(largest);
   state->contact_edge = AbutPairEdge_Private(pair, g, p);
   PetscCall(PetscMalloc2(pair->n[0], &f[0], pair->n[1], &f[1]));
   PetscCall(AbutPairComputeForce(pair, p, f[0], f[1]));

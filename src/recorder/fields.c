@@ -13,18 +13,44 @@ static PetscErrorCode AbutFieldsCreateVec_Private(MPI_Comm comm, const char name
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows of the local vertices: global numbers, then the hanging ones of all ranks */
+/* Rows of the local vertices: those with unknowns in the order of their global numbers, then the hanging ones of all ranks. Vertices come
+   first among the nodes of each rank, so the rank that owns a node, and how many vertices the ranks before it have, give the row. */
 static PetscErrorCode AbutFieldsNumberVertices_Private(MPI_Comm comm, const AbutMeshTopology *t, PetscInt number[], PetscInt *nvertices)
 {
-  PetscInt hanging = 0, next, all;
+  PetscInt    own[2] = {t->firstowned, 0}, hanging = 0, next, all, *first;
+  PetscMPIInt size;
 
   PetscFunctionBegin;
-  for (PetscInt v = 0; v < t->nvertices; ++v) hanging += t->unknown[v] < 0;
+  for (PetscInt v = 0; v < t->nvertices; ++v) {
+    hanging += t->unknown[v] < 0;
+    own[1] += t->unknown[v] >= 0 && t->unknown[v] < t->nowned;
+  }
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCall(PetscMalloc1(2 * size, &first)); /* of each rank: its first node, its vertices and then those before it */
+  PetscCallMPI(MPI_Allgather(own, 2, MPIU_INT, first, 2, MPIU_INT, comm));
+  next = 0;
+  for (PetscMPIInt r = 0; r < size; ++r) {
+    const PetscInt vertices = first[2 * r + 1];
+
+    first[2 * r + 1] = next;
+    next += vertices;
+  }
+  *nvertices = next;
   PetscCallMPI(MPI_Scan(&hanging, &next, 1, MPIU_INT, MPI_SUM, comm));
   PetscCallMPI(MPI_Allreduce(&hanging, &all, 1, MPIU_INT, MPI_SUM, comm));
-  next += t->nglobal - hanging;
-  for (PetscInt v = 0; v < t->nvertices; ++v) number[v] = t->unknown[v] < 0 ? next++ : t->global[t->unknown[v]];
-  *nvertices = t->nglobal + all;
+  next += *nvertices - hanging;
+  *nvertices += all;
+  for (PetscInt v = 0; v < t->nvertices; ++v) {
+    PetscMPIInt owner = size - 1;
+
+    if (t->unknown[v] < 0) {
+      number[v] = next++;
+      continue;
+    }
+    while (first[2 * owner] > t->global[t->unknown[v]]) --owner;
+    number[v] = t->global[t->unknown[v]] - first[2 * owner] + first[2 * owner + 1];
+  }
+  PetscCall(PetscFree(first));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -205,8 +231,8 @@ PetscErrorCode AbutRecorderWantsFields(AbutRecorder rec, PetscBool *wants)
 
    Notes:
    Per vertex the coordinates and the displacement (length unit of the scene); per cell the stress s11, s22, s33, s12 and its von
-   Mises value at the centre (stress unit), the refinement level, and eta. Vertex g of a file is the vertex with global number g,
-   hanging vertices follow.
+   Mises value at the centre (stress unit), the refinement level, and eta. Vertices with unknowns come in the order of their global
+   numbers, hanging vertices follow. Of displacements of higher order the values at the vertices are written.
 
    Behind an .xdmf is an HDF5 file with the groups `/cycle_0000/BODY`, written by all ranks together. From the second cycle on it is
    copied before more is appended, so that a crash leaves all earlier cycles readable; n cycles copy about n/2 times the final size.

@@ -70,19 +70,21 @@ static PetscErrorCode AbutSceneWantedLevels_Private(AbutScene scene, AbutBody bo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Splits the cells at the edges until they have these levels */
+/* Splits the cells at the edges until they have these levels, or the body as many unknowns as it may */
 static PetscErrorCode AbutSceneJump_Private(AbutScene scene, AbutBody body, const PetscInt level[])
 {
   AbutMesh mesh;
-  PetscInt marked = 1;
+  PetscInt marked = 1, most;
 
   PetscFunctionBegin;
+  PetscCall(AbutAdaptorGetMaxUnknowns(scene->adaptor, &most));
   PetscCall(AbutBodyGetMesh(body, &mesh));
   while (marked) {
     const AbutMeshTopology *t;
     PetscBool              *mark;
 
     PetscCall(AbutMeshGetTopology(mesh, &t));
+    if (2 * t->nglobal >= most) break;
     PetscCall(PetscCalloc1(t->ncells, &mark));
     marked = 0;
     for (PetscInt e = 0; e < scene->nedges; ++e)

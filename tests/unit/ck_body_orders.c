@@ -9,8 +9,8 @@ enum {
   HANGING             /* the same, and a first mesh of several levels */
 };
 
-/* Halving all cells divides the L2 error by 2^(p+1) and the energy error by 2^p. With both u on a side the dual problem is singular where it
-   ends: a quarter of an order less in L2. */
+/* Halving all cells divides the L2 error by 2^(p+1) and the energy error by 2^p. With both u on a side the dual problem is singular
+   where it ends: a quarter of an order less in L2. */
 START_TEST(the_displacement_converges_with_its_order_and_one_more_and_the_stress_with_its_order)
 {
   const PetscInt  order  = 1 + _i / 6;

@@ -2,9 +2,9 @@
 #include "ckbody.h"
 #include <abutestimator.h>
 
-/* Estimates against true errors of the stress, in the norm of eq. (27) of the paper, on five meshes: a smooth field, and the Hertz box, whose
-   stress is like a root at the edge of the pressure, which is a vertex from cells of 1/2 on. Prints a table: the error, the effectivity
-   (estimate over error), and Spearman's rank correlation of the cells' estimates with their errors. */
+/* Estimates against true errors of the stress, in the norm of eq. (27) of the paper, on five meshes: a smooth field, and the Hertz box,
+   whose stress is like a root at the edge of the pressure, which is a vertex from cells of 1/2 on. Prints a table: the error, the
+   effectivity (estimate over error), and Spearman's rank correlation of the cells' estimates with their errors. */
 
 #define LEVELS 5
 
@@ -142,8 +142,8 @@ static Table Measure(const char type[], CkField field, AbutShape shape, PetscInt
 
 static const char *const types[] = {"fembem", "zz", "residual"};
 
-/* The last three meshes count. The recovery of order 3 on triangles takes the edge of the pressure for too bad by up to 26 %: expected to be
-   at most 15 %. */
+/* The last three meshes count. The recovery of order 3 on triangles takes the edge of the pressure for too bad by up to 26 %: expected
+   to be at most 15 %. */
 START_TEST(estimates_are_near_the_errors_and_rank_the_cells)
 {
   const char *const type     = types[_i % 3];

@@ -2,10 +2,10 @@
 #include "ckbody.h"
 #include <abutscene.h>
 
-/* The boxes of ck_hertz.c in exact contact, with elements of order 1 to 4: how fast the energy norm of the error falls with the number of
-   unknowns N. The stress has a singularity r^(1/2) at the edge of the contact, so that uniform meshes give h^1, and from order 2 on h^(3/2),
-   whatever the order; meshes that are graded towards the edge give N^(-p/2), like a smooth solution. Cells are marked by their true error, by
-   an estimator that knows the exact solution, or by those of the plugins. */
+/* The boxes of ck_hertz.c in exact contact, with elements of order 1 to 4: how fast the energy norm of the error falls with the number
+   of unknowns N. The stress has a singularity r^(1/2) at the edge of the contact, so that uniform meshes give h^1, and from order 2 on
+   h^(3/2), whatever the order; meshes that are graded towards the edge give N^(-p/2), like a smooth solution. Cells are marked by their
+   true error, by an estimator that knows the exact solution, or by those of the plugins. */
 
 #define CURVE (2. * (1. - CK_POISSON * CK_POISSON) * 1000. / (CK_YOUNG * 0.5)) /* 1/R */
 #define STEPS 60

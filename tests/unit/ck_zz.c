@@ -1,4 +1,5 @@
 #include "ck_box.h"
+#include "ck_estimate.h"
 #include <complex.h>
 #undef I
 #include <patch.h>
@@ -126,20 +127,6 @@ static AbutBody Solved(MPI_Comm comm, Potentials (*solution)(const PetscReal[2])
   return body;
 }
 
-static void Estimate(AbutBody body, PetscReal *total, PetscReal *largest)
-{
-  AbutEstimator est;
-  Vec           eta;
-
-  CkOk(AbutEstimatorCreate(PetscObjectComm((PetscObject)body), &est));
-  CkOk(AbutEstimatorSetType(est, ABUTESTIMATORZZ)); /* opens the plugin */
-  CkOk(AbutBodyCreateCellVec(body, &eta));
-  CkOk(AbutEstimatorEstimate(est, body, eta));
-  CkOk(AbutEstimatorGetNorms(body, eta, total, largest));
-  CkOk(VecDestroy(&eta));
-  CkOk(AbutEstimatorDestroy(&est));
-}
-
 /* The spaces of quads of orders 1 to 4, then of triangles of orders 1 to 3 */
 static AbutPatchSpace Space(PetscInt i)
 {
@@ -245,7 +232,7 @@ START_TEST(a_moved_polynomial_has_the_same_values)
   PetscReal            a[3 * ABUT_PATCH_TERMS_MAX], b[3 * ABUT_PATCH_TERMS_MAX], s[2][3];
 
   for (PetscInt i = 0; i < space.coefs; ++i) a[i] = 1. + 0.5 * (i % 7) - 0.4 * (i % 5);
-  AbutPatchShift_Private(&space, a, d, b);
+  AbutPatchShift_Private(&space, space.order, a, d, b);
   AbutPatchEvaluate_Private(&space, a, there, s[0]);
   AbutPatchEvaluate_Private(&space, b, x, s[1]);
   for (PetscInt k = 0; k < 3; ++k) ck_assert_double_eq_tol(s[0][k], s[1][k], 1e-12);
@@ -309,8 +296,8 @@ static void CheckRanks(AbutShape shape, PetscInt nx, PetscInt ny, PetscInt refin
   AbutBody  all = Solved(PETSC_COMM_WORLD, Smooth, shape, nx, ny, refine), one = Solved(PETSC_COMM_SELF, Smooth, shape, nx, ny, refine);
   PetscReal total[2], largest[2];
 
-  Estimate(all, &total[0], &largest[0]);
-  Estimate(one, &total[1], &largest[1]);
+  CkEstimate(all, ABUTESTIMATORZZ, &total[0], &largest[0]);
+  CkEstimate(one, ABUTESTIMATORZZ, &total[1], &largest[1]);
   ck_assert_double_eq_tol(total[0], total[1], 1e-10 * total[1]);
   ck_assert_double_eq_tol(largest[0], largest[1], 1e-10 * largest[1]);
   CkOk(AbutBodyDestroy(&all));
@@ -332,7 +319,7 @@ START_TEST(the_estimate_is_close_to_the_error)
   PetscReal error, C, effectivity, total, largest;
 
   Measure(body, &error, &C, &effectivity);
-  Estimate(body, &total, &largest);
+  CkEstimate(body, ABUTESTIMATORZZ, &total, &largest);
   ck_assert_double_eq_tol(total, error, 0.02 * error);
   ck_assert_double_gt(largest, total);
   CkOk(AbutBodyDestroy(&body));
@@ -345,7 +332,7 @@ START_TEST(a_body_without_inner_vertices_has_an_estimate)
     AbutBody  body  = Solved(PETSC_COMM_WORLD, Smooth, (AbutShape)_i, nx, 1, 0);
     PetscReal total = -1., largest = -1.;
 
-    Estimate(body, &total, &largest);
+    CkEstimate(body, ABUTESTIMATORZZ, &total, &largest);
     ck_assert(!PetscIsInfOrNanReal(total) && total >= 0.);
     if (nx > 1) ck_assert_double_gt(total, 0.01);
     CkOk(AbutBodyDestroy(&body));

@@ -1,6 +1,6 @@
 /* ranks: 1 2 3 4 */
 #include "ckbody.h"
-#include <abutestimator.h>
+#include "ck_estimate.h"
 #include <zz.h>
 
 /* The patch recovery with cells of orders 1 to 4 (triangles: 3) against exact stresses, smooth ones and one with the edge of a contact */
@@ -111,20 +111,6 @@ static Quality Measure(AbutBody body, const CkField *field)
   return q;
 }
 
-static void Estimate(AbutBody body, PetscReal *total, PetscReal *largest)
-{
-  AbutEstimator est;
-  Vec           eta;
-
-  CkOk(AbutEstimatorCreate(PetscObjectComm((PetscObject)body), &est));
-  CkOk(AbutEstimatorSetType(est, ABUTESTIMATORZZ)); /* opens the plugin */
-  CkOk(AbutBodyCreateCellVec(body, &eta));
-  CkOk(AbutEstimatorEstimate(est, body, eta));
-  CkOk(AbutEstimatorGetNorms(body, eta, total, largest));
-  CkOk(VecDestroy(&eta));
-  CkOk(AbutEstimatorDestroy(&est));
-}
-
 /* Quads of orders 1 to 4, then triangles of orders 1 to 3 */
 static AbutShape Shape(PetscInt i)
 {
@@ -225,8 +211,8 @@ START_TEST(hanging_nodes_are_judged_as_well)
 }
 END_TEST
 
-/* Where the stress is not smooth the recovered one is no better than that of the finite elements; its distance from it still tells the error.
-   Triangles of order 3 exaggerate. */
+/* Where the stress is not smooth the recovered one is no better than that of the finite elements; its distance from it still tells the
+   error. Triangles of order 3 exaggerate. */
 static PetscReal Most(PetscInt i)
 {
   return i == 6 ? 1.25 : 1.15;
@@ -301,7 +287,7 @@ START_TEST(what_the_cells_hold_has_no_error)
     CkRefine(CkMeshOf(body), CkTowardsPoint, 3);
     CkOk(AbutBodySolve(body, NULL));
     ck_assert_double_lt(CkStressError(body, &field), 1e-8);
-    Estimate(body, &total, &largest);
+    CkEstimate(body, ABUTESTIMATORZZ, &total, &largest);
     ck_assert_double_lt(largest, 1e-7);
   }
   CkOk(AbutBodyDestroy(&body));
@@ -320,7 +306,7 @@ START_TEST(all_numbers_of_ranks_give_the_same_estimate)
 
       CkRefine(CkMeshOf(body), scene ? AtTheEdgeOfContact : CkTowardsPoint, 3);
       CkOk(AbutBodySolve(body, NULL));
-      Estimate(body, &total[alone], &largest[alone]);
+      CkEstimate(body, ABUTESTIMATORZZ, &total[alone], &largest[alone]);
       CkOk(AbutBodyDestroy(&body));
     }
     ck_assert_double_eq_tol(total[0], total[1], 1e-6 * total[1]);
@@ -338,7 +324,7 @@ START_TEST(a_body_without_inner_vertices_has_an_estimate)
 
     CkGiveAll(body, &field, "ut", "tt", "tu", "tt");
     CkOk(AbutBodySolve(body, NULL));
-    Estimate(body, &total, &largest);
+    CkEstimate(body, ABUTESTIMATORZZ, &total, &largest);
     ck_assert(!PetscIsInfOrNanReal(total) && total >= 0.);
     CkOk(AbutBodyDestroy(&body));
   }

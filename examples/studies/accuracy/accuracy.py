@@ -9,13 +9,14 @@ mesh: its CPU seconds are those of the whole process, start-up included. Cases t
 after a change of the program. --tables runs nothing and makes tables of what is there.
 """
 
-import argparse, collections, concurrent.futures, csv, json, os, subprocess, sys, tempfile, threading, time
+import argparse, collections, csv, json, os, subprocess, sys, tempfile, threading, time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 TOP = os.path.dirname(os.path.dirname(os.path.dirname(HERE)))
 SCENE = os.path.join(HERE, "layers_exact.yml")
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(HERE)), "layers"))
+sys.path[:0] = [os.path.join(os.path.dirname(os.path.dirname(HERE)), "layers"), os.path.dirname(HERE)]
 from layers import number, profile, record  # noqa: E402
+from study import append, side_by_side  # noqa: E402
 
 ORDERS = (1, 2, 3, 4)
 ESTIMATORS = ("zz", "residual", "fembem")
@@ -158,26 +159,14 @@ class Study:
 
     def keep(self, case, rows, done, total):
         with self.lock:
-            fresh = not os.path.exists(self.path)
-            with open(self.path, "a", newline="") as f:
-                out = csv.DictWriter(f, COLUMNS, restval="", lineterminator="\n")
-                if fresh:
-                    out.writeheader()
-                out.writerows(rows)
+            append(self.path, COLUMNS, rows)
             self.cases[case] = rows
             print(f"{done:4}/{total}  {named(case):82}{len(rows):3} meshes  {rows[-1]['verdict'][:60]}", flush=True)
 
     def all(self, cases):
         todo = [case for case in cases if case not in self.cases]
         print(f"{len(cases)} cases, {len(cases) - len(todo)} of them in {self.path}", flush=True)
-        with concurrent.futures.ThreadPoolExecutor(self.args.processes) as pool:
-            runs = {pool.submit(lambda case=case: list(self.meshes(case))): case for case in todo}
-            try:
-                for done, future in enumerate(concurrent.futures.as_completed(runs), 1):
-                    self.keep(runs[future], future.result(), done, len(todo))
-            except BaseException:
-                pool.shutdown(cancel_futures=True)
-                raise
+        side_by_side(self.args.processes, lambda case: list(self.meshes(case)), todo, self.keep)
 
 
 def named(case):

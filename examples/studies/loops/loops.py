@@ -7,13 +7,14 @@ Leaves loops.csv, one line a run, and loops.md, the tables. Runs that loops.csv 
 change of the program.
 The exit status is 1 if the default loop fails anywhere, or takes more sweeps than the page of this folder says.
 """
-import argparse, collections, concurrent.futures, csv, os, statistics, subprocess, sys, tempfile, threading, time
+import argparse, collections, csv, os, statistics, subprocess, sys, tempfile, threading, time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 EXAMPLES = os.path.dirname(os.path.dirname(HERE))
 LOOPS = os.path.join(os.path.dirname(EXAMPLES), "petscopts", "loop")
-sys.path.insert(0, os.path.join(EXAMPLES, "layers"))
+sys.path[:0] = [os.path.join(EXAMPLES, "layers"), os.path.dirname(HERE)]
 from layers import record  # noqa: E402
+from study import append, side_by_side  # noqa: E402
 
 RTOL = 1e-8
 PENALTIES = (0.5, 0.05, 0.005, 5e-4, 5e-5, 0)
@@ -93,12 +94,7 @@ class Study:
 
     def keep(self, case, row, done, total):
         with self.lock:
-            fresh = not os.path.exists(self.path)
-            with open(self.path, "a", newline="") as f:
-                out = csv.DictWriter(f, COLUMNS, restval="", lineterminator="\n")
-                if fresh:
-                    out.writeheader()
-                out.writerow(row)
+            append(self.path, COLUMNS, [row])
             self.rows[case] = row
             what = f"{case.layers}, {case.mesh}, c = {case.c:g}, {case.loop}"
             print(f"{done:4}/{total}  {row['seconds']:>7} s  {what:55}{row['verdict']:15}{row.get('sweeps', '')}", flush=True)
@@ -106,14 +102,7 @@ class Study:
     def all(self, cases):
         todo = [case for case in cases if case not in self.rows]
         print(f"{len(cases)} runs, {len(cases) - len(todo)} of them in {self.path}", flush=True)
-        with concurrent.futures.ThreadPoolExecutor(self.args.processes) as pool:
-            runs = {pool.submit(self.run, case): case for case in todo}
-            try:
-                for done, future in enumerate(concurrent.futures.as_completed(runs), 1):
-                    self.keep(runs[future], future.result(), done, len(todo))
-            except BaseException:
-                pool.shutdown(cancel_futures=True)
-                raise
+        side_by_side(self.args.processes, self.run, todo, self.keep)
 
 
 def text(row):

@@ -5,15 +5,16 @@
 
 Every row is one run with -scene_tol, whose tolerance is chosen so that the last mesh has about as many unknowns as the row says.
 Leaves shares.csv, one line a run, and shares.md, the table. Runs that shares.csv already has are not repeated: delete it after a change of
-the program. Seconds are those of this machine, alone; compare rows of one session only.
+the program. Seconds are those of this machine, alone; compare rows of one study only.
 """
 import argparse, csv, math, os, subprocess, sys, tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 STUDIES = os.path.dirname(HERE)
 EXAMPLES = os.path.dirname(STUDIES)
-sys.path.insert(0, os.path.join(EXAMPLES, "layers"))
+sys.path[:0] = [os.path.join(EXAMPLES, "layers"), STUDIES]
 from layers import record  # noqa: E402
+from study import append  # noqa: E402
 
 SCENE = os.path.join(STUDIES, "shares", "layers_tol.yml")
 SIZES = (1e3, 1e4, 1e5, 1e6, 1e7)
@@ -75,12 +76,7 @@ def main():
             key = f"{size:g}", solver, args.estimator, args.order
             if key not in done:
                 done[key] = run(args, size, solver)
-                fresh = not os.path.exists(path)
-                with open(path, "a", newline="") as f:
-                    out = csv.DictWriter(f, COLUMNS, lineterminator="\n")
-                    if fresh:
-                        out.writeheader()
-                    out.writerow(done[key])
+                append(path, COLUMNS, [done[key]])
                 print(f"{solver:8}{size:8g} unknowns wanted, {done[key]['unknowns']} had, {float(done[key]['seconds']):.1f} s", flush=True)
             rows.append(done[key])
     lines = list(table(rows))
