@@ -89,7 +89,8 @@ void AbutPatchFit_Private(const AbutPatchSpace *space, const PetscReal m[], Pets
   }
 }
 
-/* The same polynomials about an origin moved by d: x^i becomes the sum of binomial(i,k) d^(i-k) x^k; of a, the terms of up to a degree in each coordinate */
+/* The same polynomials, as far as they are of up to a degree in each coordinate, about an origin moved by d: x^i becomes the sum of
+   binomial(i,k) d^(i-k) x^k */
 void AbutPatchShift_Private(const AbutPatchSpace *space, PetscInt degree, const PetscReal a[], const PetscReal d[2], PetscReal b[])
 {
   static const PetscReal binomial[5][5] = {

@@ -66,6 +66,9 @@ static PetscErrorCode AbutAdaptorSetBodies_Private(AbutAdaptor adaptor, char lis
    whatever the order of the displacement. With `-adaptor_follow` the vertex that is nearest to each end of a contact, as estimated on the
    last meshes (`AbutPairGetEdges()`), is tied to it on both sides (`AbutMeshSetTies()`). At order 1 this gains little.
 
+   Limits: where contact reaches the end of the part that both sides share, as below the corner of a punch, there is no edge to follow.
+   No type coarsens.
+
 .seealso: `AbutAdaptorMark()`, `AbutAdaptorGetBodies()`
 @*/
 PetscErrorCode AbutAdaptorSetFromOptions(AbutAdaptor adaptor)
