@@ -126,6 +126,21 @@ static PetscErrorCode AbutSceneCyclesFromOptions_Private(AbutScene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Keys of the adaptor that speak of the edges of contacts */
+static PetscErrorCode AbutSceneCheckEdgeKeys_Private(AbutScene scene)
+{
+  const char *const key[] = {"-adaptor_jump", "-adaptor_follow", NULL};
+  PetscBool         has;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; key[i] && !scene->npairs; ++i) {
+    PetscCall(PetscOptionsHasName(NULL, NULL, key[i], &has));
+    AbutCheckInput(!has, PetscObjectComm((PetscObject)scene),
+                   "%s: the scene has no pair, so no contact has an edge; give scene_pairs, or leave it out", key[i] + 1);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
    AbutSceneSetFromOptions - Reads a scene and makes what it names
 
@@ -210,6 +225,7 @@ PetscErrorCode AbutSceneSetFromOptions(AbutScene scene)
   if (scene->npairs && scene->adaptor && !scene->interleave) PetscCall(AbutSceneCyclesFromOptions_Private(scene));
   AbutCheckInput(!scene->interleave || scene->adaptor, comm,
                  "scene_interleave: the scene has no adaptor; give adaptor_type, or leave scene_interleave out");
+  PetscCall(AbutSceneCheckEdgeKeys_Private(scene));
   PetscCall(PetscOptionsHasName(NULL, NULL, "-output_profile", &profile));
   AbutCheckInput(!profile || scene->npairs, comm,
                  "output_profile: the scene has no pair to make a profile of; give scene_pairs, or leave it out");

@@ -105,6 +105,26 @@ static PetscErrorCode AbutScenePrintCost_Private(AbutScene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What a limit kept from being reached, and which keys say so */
+static PetscErrorCode AbutScenePrintLimit_Private(AbutScene scene)
+{
+  PetscReal   target;
+  const char *what = "cells are still above the threshold", *key = "the threshold";
+
+  PetscFunctionBegin;
+  PetscCall(AbutAdaptorGetTarget(scene->adaptor, &target));
+  if (scene->tol > 0.) {
+    what = "the estimate is still above its part of scene_tol";
+    key  = "-scene_tol";
+  } else if (target > 0.) {
+    what = "the estimate is still above the target";
+    key  = "-adaptor_target";
+  }
+  PetscCall(PetscPrintf(PetscObjectComm((PetscObject)scene), "verdict: %s (%s: raise -adaptor_max_level or -adaptor_max_unknowns, or %s)\n",
+                        scene->verdict, what, key));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode AbutScenePrintEnd_Private(AbutScene scene)
 {
   MPI_Comm    comm = PetscObjectComm((PetscObject)scene);
@@ -116,10 +136,7 @@ PetscErrorCode AbutScenePrintEnd_Private(AbutScene scene)
   PetscCall(AbutScenePrintCost_Private(scene));
   PetscCall(AbutInterfaceGetFloating(scene->iface, &floating));
   if (floating[0]) PetscCall(PetscPrintf(comm, "%s\n", floating));
-  if (scene->status == 3)
-    PetscCall(PetscPrintf(comm, "verdict: %s (%s: raise -adaptor_max_level or -adaptor_max_unknowns, or %s)\n", scene->verdict,
-                          scene->tol > 0. ? "the estimate is still above its part of scene_tol" : "cells are still above the threshold",
-                          scene->tol > 0. ? "-scene_tol" : "the threshold"));
+  if (scene->status == 3) PetscCall(AbutScenePrintLimit_Private(scene));
   else PetscCall(PetscPrintf(comm, "verdict: %s\n", scene->verdict));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
