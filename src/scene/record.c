@@ -101,6 +101,32 @@ static PetscErrorCode AbutSceneRecordBodies_Private(AbutScene scene, PetscBool *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode AbutSceneRecordPair_Private(AbutScene scene, const char name[], PetscReal theta, const AbutPairState *s)
+{
+  const struct {
+    const char *key;
+    PetscReal   value;
+  } read[] = {
+    {"force",           s->force          },
+    {"pressure_max",    s->pressure_max   },
+    {"contact_length",  s->contact_length },
+    {"contact_edge",    s->contact_edge   },
+    {"penetration_max", s->penetration_max},
+    {"active",          s->active         },
+    {"balance",         s->balance        },
+    {"complementarity", s->complementarity},
+    {"theta",           theta             }
+  };
+  char key[256];
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < (PetscInt)PETSC_STATIC_ARRAY_LENGTH(read); ++k)
+    PetscCall(AbutSceneSetReal_Private(scene, "pair", name, read[k].key, read[k].value));
+  PetscCall(PetscSNPrintf(key, sizeof(key), "pair.%s.pressure_reading", name));
+  PetscCall(AbutRecorderSetString(scene->recorder, key, s->consistent ? "consistent" : "nodal"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode AbutSceneRecordPairs_Private(AbutScene scene, PetscBool *consistent)
 {
   AbutRecorder rec     = scene->recorder;
@@ -110,34 +136,13 @@ static PetscErrorCode AbutSceneRecordPairs_Private(AbutScene scene, PetscBool *c
   if (!scene->npairs) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < scene->npairs; ++i) {
     const char   *name;
-    char          key[256];
     AbutPairState s;
     PetscReal     theta;
 
     PetscCall(AbutPairGetName(scene->pair[i], &name));
     PetscCall(AbutPairGetTheta(scene->pair[i], &theta));
     PetscCall(AbutInterfaceGetPairState(scene->iface, i, &s));
-    {
-      const struct {
-        const char *key;
-        PetscReal   value;
-      } read[] = {
-        {"force",           s.force          },
-        {"pressure_max",    s.pressure_max   },
-        {"contact_length",  s.contact_length },
-        {"contact_edge",    s.contact_edge   },
-        {"penetration_max", s.penetration_max},
-        {"active",          s.active         },
-        {"balance",         s.balance        },
-        {"complementarity", s.complementarity},
-        {"theta",           theta            }
-      };
-
-      for (PetscInt k = 0; k < (PetscInt)PETSC_STATIC_ARRAY_LENGTH(read); ++k)
-        PetscCall(AbutSceneSetReal_Private(scene, "pair", name, read[k].key, read[k].value));
-    }
-    PetscCall(PetscSNPrintf(key, sizeof(key), "pair.%s.pressure_reading", name));
-    PetscCall(AbutRecorderSetString(rec, key, s.consistent ? "consistent" : "nodal"));
+    PetscCall(AbutSceneRecordPair_Private(scene, name, theta, &s));
     penalty += s.energy;
     *consistent = (PetscBool)(*consistent && s.balance <= scene->consistent && s.pressure_min >= 0.);
   }
