@@ -25,8 +25,9 @@ static PetscErrorCode AbutPairProject_Private(AbutPair pair, PetscReal *s[2], Pe
 
 #define ABUT_STIFFER 1.5
 
-/* The side with more nodes on the common part carries the pressures, the first one if equal; but never that of the clearly stiffer body.
-   Pressures that only a stiff body resolves are held by its small compliance alone, and oscillate. */
+/* The side with more elements on the common part carries the pressures, of equally many that of the lower order, then the first; but never
+   that of the clearly stiffer body. Pressures that only a stiff body resolves are held by its small compliance alone, and those that only
+   one side resolves are rough: both oscillate. */
 static PetscErrorCode AbutPairChoosePressureSide_Private(AbutPair pair)
 {
   PetscInt  count[2] = {0, 0};
@@ -44,10 +45,10 @@ static PetscErrorCode AbutPairChoosePressureSide_Private(AbutPair pair)
       box[d]     = PetscMin(box[d], other->x[2 * i + d]);
       box[2 + d] = PetscMax(box[2 + d], other->x[2 * i + d]);
     }
-    for (PetscInt i = 0; i < own->n; ++i)
+    for (PetscInt i = 0; i < own->n; i += own->order)
       if (own->x[2 * i + d] >= box[d] && own->x[2 * i + d] <= box[2 + d]) ++count[k];
   }
-  pair->which = count[1] > count[0];
+  pair->which = count[1] > count[0] || (count[1] == count[0] && pair->nodes[1]->order < pair->nodes[0]->order);
   for (PetscInt s = 0; s < 2; ++s) {
     PetscCall(AbutBodyGetMaterial(pair->body[s], &young[s], &poisson[s]));
     modulus[s] = young[s] / (1. - poisson[s] * poisson[s]);
