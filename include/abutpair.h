@@ -57,5 +57,12 @@ PETSC_EXTERN PetscErrorCode AbutPairGetGap(AbutPair, const PetscReal[2], PetscRe
 PETSC_EXTERN PetscErrorCode AbutPairGetPressureNodes(AbutPair, PetscInt *, PetscInt *, const PetscReal *[], const PetscReal *[]);
 PETSC_EXTERN PetscErrorCode AbutPairRecoverPressure(AbutPair, const PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutPairGetState(AbutPair, const PetscReal[], const PetscReal[], const PetscReal[], AbutPairState *);
+/* An element of the pressure side that holds the largest pressure */
+typedef struct {
+  PetscReal x[2];   /* the node of its largest pressure */
+  PetscReal length; /* of the element */
+  PetscReal last;   /* Legendre coefficient of the pressure on it, relative to the largest pressure of the pair */
+} AbutPeak;
+PETSC_EXTERN PetscErrorCode AbutPairGetPeaks(AbutPair, const PetscReal[], PetscReal, PetscInt, PetscInt *, AbutPeak[]);
 PETSC_EXTERN PetscErrorCode AbutPairGetEdges(AbutPair, const PetscReal[], const PetscReal[], const PetscReal[], PetscInt, PetscInt *,
                                              PetscReal[][2]);

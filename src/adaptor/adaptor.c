@@ -171,7 +171,8 @@ static PetscErrorCode AbutAdaptorPassesUnknowns_Private(AbutAdaptor adaptor, Abu
    Input Parameters:
 +  adaptor - the adaptor
 .  body    - the body
--  eta     - the indicators of its cells, from `AbutEstimatorEstimate()`
+.  eta     - the indicators of its cells, from `AbutEstimatorEstimate()`
+-  also    - [cells on this rank] cells to refine whatever their indicators, or `NULL`
 
    Output Parameters:
 +  mark    - [cells on this rank] for `AbutMeshAdapt()`
@@ -188,7 +189,8 @@ static PetscErrorCode AbutAdaptorPassesUnknowns_Private(AbutAdaptor adaptor, Abu
 
 .seealso: `AbutMeshAdapt()`, `AbutEstimatorEstimate()`, `AbutAdaptVerdict`
 @*/
-PetscErrorCode AbutAdaptorMark(AbutAdaptor adaptor, AbutBody body, Vec eta, PetscBool mark[], PetscInt *nmarked, AbutAdaptVerdict *verdict)
+PetscErrorCode AbutAdaptorMark(AbutAdaptor adaptor, AbutBody body, Vec eta, const PetscBool also[], PetscBool mark[], PetscInt *nmarked,
+                               AbutAdaptVerdict *verdict)
 {
   AbutMesh                mesh;
   const AbutMeshTopology *t;
@@ -205,6 +207,7 @@ PetscErrorCode AbutAdaptorMark(AbutAdaptor adaptor, AbutBody body, Vec eta, Pets
   PetscCall(VecGetArrayRead(eta, &e));
   PetscUseTypeMethod(adaptor, mark, body, t->ncells, e, mark);
   PetscCall(VecRestoreArrayRead(eta, &e));
+  for (PetscInt c = 0; c < t->ncells && also; ++c) mark[c] = (PetscBool)(mark[c] || also[c]);
   PetscCall(AbutAdaptorCapLevel_Private(adaptor, t, mark, count));
   *nmarked = 0;
   if (!count[1]) *verdict = ABUT_ADAPT_DONE;

@@ -2,9 +2,11 @@
 
 /* Where contact begins and ends */
 
-/* Distance of a node from the first one along the (straight) side */
-static PetscReal AbutPairPlace_Private(const AbutSide *m, PetscInt i)
+/* Distance of a node of the pressure side from the first one along the (straight) side */
+PetscReal AbutPairPlace_Private(AbutPair pair, PetscInt i)
 {
+  const AbutSide *m = pair->nodes[pair->which];
+
   return PetscSqrtReal(PetscSqr(m->x[2 * i] - m->x[0]) + PetscSqr(m->x[2 * i + 1] - m->x[1]));
 }
 
@@ -14,14 +16,14 @@ static PetscReal AbutPairEdgeOfGap_Private(AbutPair pair, const PetscReal g[], c
 {
   const AbutSide *m    = pair->nodes[pair->which];
   const PetscInt  end  = PetscMin(PetscMax(in + step * pair->order[0], 0), m->n - 1);
-  const PetscReal last = AbutPairPlace_Private(m, in), h = PetscAbsReal(AbutPairPlace_Private(m, end) - last);
+  const PetscReal last = AbutPairPlace_Private(pair, in), h = PetscAbsReal(AbutPairPlace_Private(pair, end) - last);
   PetscReal       s[3], y[3], ms = 0., my = 0., sy = 0., ss = 0., edge;
 
   for (PetscInt k = 0; k < 3; ++k) {
     const PetscInt node = in + (k + 2) * step;
 
     if (node < 0 || node >= m->n || pair->D[node] <= 0. || p[node] > 0. || g[node] >= 0.) return last;
-    s[k] = AbutPairPlace_Private(m, node);
+    s[k] = AbutPairPlace_Private(pair, node);
     y[k] = PetscPowReal(-g[node], 2. / 3.);
     ms += s[k] / 3.;
     my += y[k] / 3.;
@@ -43,8 +45,8 @@ PetscBool AbutPairEdgeBeyond_Private(AbutPair pair, const PetscReal g[], const P
   const PetscInt  out = in + step;
 
   if (out < 0 || out >= m->n || pair->D[out] <= 0.) return PETSC_FALSE;
-  *at = pair->theta > 0. ? AbutPairPlace_Private(m, in) : AbutPairEdgeOfGap_Private(pair, g, p, in, step);
-  if (pair->theta > 0. && g[in] > 0. && g[out] < 0.) *at += (AbutPairPlace_Private(m, out) - *at) * g[in] / (g[in] - g[out]);
+  *at = pair->theta > 0. ? AbutPairPlace_Private(pair, in) : AbutPairEdgeOfGap_Private(pair, g, p, in, step);
+  if (pair->theta > 0. && g[in] > 0. && g[out] < 0.) *at += (AbutPairPlace_Private(pair, out) - *at) * g[in] / (g[in] - g[out]);
   return PETSC_TRUE;
 }
 
@@ -80,7 +82,7 @@ PetscErrorCode AbutPairGetEdges(AbutPair pair, const PetscReal u1[], const Petsc
 
   PetscFunctionBegin;
   PetscCall(AbutPairComputePenetration(pair, u1, u2, g));
-  length = AbutPairPlace_Private(m, m->n - 1);
+  length = AbutPairPlace_Private(pair, m->n - 1);
   *n     = 0;
   for (PetscInt i = 0; i < m->n; ++i)
     for (PetscInt step = -1; step <= 1; step += 2) {

@@ -14,11 +14,9 @@ typedef struct {
 
 static PetscBool AbutPairCoversElement_Private(AbutPair pair, PetscInt e, PetscReal *h)
 {
-  const AbutSide  *m = pair->nodes[pair->which];
-  const PetscReal *a = m->x + 2 * pair->order[0] * e, *b = a + 2 * pair->order[0];
-  const PetscReal  from = PetscSqrtReal(PetscSqr(a[0] - m->x[0]) + PetscSqr(a[1] - m->x[1]));
+  const PetscReal from = AbutPairPlace_Private(pair, pair->order[0] * e);
 
-  *h = PetscSqrtReal(PetscSqr(b[0] - a[0]) + PetscSqr(b[1] - a[1]));
+  *h = AbutPairPlace_Private(pair, pair->order[0] * (e + 1)) - from;
   return (PetscBool)(from > pair->overlap[0] - 1e-9 * *h && from + *h < pair->overlap[1] + 1e-9 * *h);
 }
 

@@ -19,23 +19,19 @@ static PetscReal AbutPairEdge_Private(AbutPair pair, const PetscReal g[], const 
 
 static PetscErrorCode AbutPairReadPressures_Private(AbutPair pair, const PetscReal p[], AbutPairState *state)
 {
-  const PetscInt   n    = pair->n[pair->which];
-  const PetscReal *read = p;
-  PetscReal       *consistent;
+  const PetscInt n = pair->n[pair->which];
+  PetscReal     *read;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(n, &consistent));
-  if (pair->order[0] > 1) {
-    PetscCall(AbutPairRecoverPressure(pair, p, consistent));
-    read              = consistent;
-    state->consistent = PETSC_TRUE;
-  }
+  PetscCall(PetscMalloc1(n, &read));
+  PetscCall(AbutPairReadPressure_Private(pair, p, read));
+  state->consistent = (PetscBool)(pair->order[0] > 1);
   for (PetscInt i = 0; i < n; ++i) {
     if (pair->D[i] <= 0.) continue;
     state->pressure_max = PetscMax(state->pressure_max, read[i]);
     state->pressure_min = PetscMin(state->pressure_min, p[i]);
   }
-  PetscCall(PetscFree(consistent));
+  PetscCall(PetscFree(read));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -3,7 +3,6 @@
 /* The edges of the contacts, where the stress has its singularities, and what the meshes do about them */
 
 #define ABUT_EDGES_MAX 64 /* of a pair; more are not looked after */
-#define ABUT_TOUCH     1e-6
 
 /* Keeps the edges that the last solve found, before the meshes change */
 PetscErrorCode AbutSceneKeepEdges_Private(AbutScene scene)
@@ -38,8 +37,8 @@ static PetscInt AbutSceneEdgeSide_Private(const AbutContactEdge *edge, AbutBody 
   return edge->body[0] == body ? edge->side[0] : (edge->body[1] == body ? edge->side[1] : -1);
 }
 
-/* Does an element side on the boundary touch the edge, seen along it? */
-static PetscBool AbutSideEdgeTouches_Private(const AbutMeshTopology *t, PetscInt k, const PetscReal x[2])
+/* Does an element side on the boundary touch the point, seen along it? */
+PetscBool AbutSideTouches_Private(const AbutMeshTopology *t, PetscInt k, const PetscReal x[2])
 {
   const PetscReal *a = t->x + 2 * t->sideedge[3 * k], *b = t->x + 2 * t->sideedge[3 * k + 1], d[2] = {b[0] - a[0], b[1] - a[1]};
   const PetscReal  z = ((x[0] - a[0]) * d[0] + (x[1] - a[1]) * d[1]) / (d[0] * d[0] + d[1] * d[1]);
@@ -63,7 +62,7 @@ static PetscErrorCode AbutSceneWantedLevels_Private(AbutScene scene, AbutBody bo
 
     level[e] = -1;
     for (PetscInt k = 0; k < t->nsideedges; ++k)
-      if (t->sideedge[3 * k + 2] == side && mark[t->sidecell[k]] && AbutSideEdgeTouches_Private(t, k, scene->edge[e].x))
+      if (t->sideedge[3 * k + 2] == side && mark[t->sidecell[k]] && AbutSideTouches_Private(t, k, scene->edge[e].x))
         level[e] = PetscMax(level[e], PetscMin(t->level[t->sidecell[k]] + jump, last));
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, level, (PetscMPIInt)scene->nedges, MPIU_INT, MPI_MAX, PetscObjectComm((PetscObject)scene)));
@@ -92,7 +91,7 @@ static PetscErrorCode AbutSceneJump_Private(AbutScene scene, AbutBody body, cons
         const PetscInt c = t->sidecell[k];
 
         if (t->level[c] >= level[e] || t->sideedge[3 * k + 2] != AbutSceneEdgeSide_Private(&scene->edge[e], body)) continue;
-        if (!AbutSideEdgeTouches_Private(t, k, scene->edge[e].x)) continue;
+        if (!AbutSideTouches_Private(t, k, scene->edge[e].x)) continue;
         mark[c] = PETSC_TRUE;
         ++marked;
       }
@@ -168,6 +167,17 @@ PetscErrorCode AbutSceneFollows_Private(AbutScene scene, PetscBool *follows)
   *follows = PETSC_FALSE;
   for (PetscInt b = 0; b < scene->nbodies && !*follows; ++b)
     if (scene->estimates[b]) PetscCall(AbutSceneBodyFollows_Private(scene, scene->body[b], follows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Are the meshes to move only, this time? */
+PetscErrorCode AbutSceneSettles_Private(AbutScene scene, PetscBool *settles)
+{
+  PetscFunctionBegin;
+  *settles = PETSC_FALSE;
+  if (!scene->adaptor || scene->settled) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AbutAdaptorSettles(scene->adaptor, settles));
+  if (*settles) PetscCall(AbutSceneFollows_Private(scene, settles));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

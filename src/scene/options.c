@@ -126,18 +126,29 @@ static PetscErrorCode AbutSceneCyclesFromOptions_Private(AbutScene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Keys of the adaptor that speak of the edges of contacts */
-static PetscErrorCode AbutSceneCheckEdgeKeys_Private(AbutScene scene)
+/* Keys of the adaptor that speak of contacts */
+static PetscErrorCode AbutSceneCheckContactKeys_Private(AbutScene scene)
 {
-  const char *const key[] = {"-adaptor_jump", "-adaptor_follow", NULL};
-  PetscBool         has;
+  const char *const key[] = {"-adaptor_jump", "-adaptor_follow", "-adaptor_settle", "-adaptor_peak", NULL};
+  PetscReal         peak  = 0., rtol;
+  PetscBool         has, settles = PETSC_FALSE, follows;
 
   PetscFunctionBegin;
   for (PetscInt i = 0; key[i] && !scene->npairs; ++i) {
     PetscCall(PetscOptionsHasName(NULL, NULL, key[i], &has));
     AbutCheckInput(!has, PetscObjectComm((PetscObject)scene),
-                   "%s: the scene has no pair, so no contact has an edge; give scene_pairs, or leave it out", key[i] + 1);
+                   "%s: the scene has no pair, so there is no contact; give scene_pairs, or leave it out", key[i] + 1);
   }
+  if (!scene->snes || !scene->adaptor) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AbutAdaptorSettles(scene->adaptor, &settles));
+  PetscCall(AbutSceneFollows_Private(scene, &follows));
+  AbutCheckInput(!settles || follows, PetscObjectComm((PetscObject)scene),
+                 "adaptor_settle: no mesh follows the edges of contacts; give adaptor_follow: true, or leave it out");
+  PetscCall(AbutAdaptorGetPeak(scene->adaptor, &peak));
+  PetscCall(SNESGetTolerances(scene->snes, NULL, &rtol, NULL, NULL, NULL));
+  AbutCheckInput(peak == 0. || ABUT_SHARE_PEAK * peak >= rtol, PetscObjectComm((PetscObject)scene),
+                 "adaptor_peak: %g is below what the loop leaves; give at least %g, or snes_rtol below %g", (double)peak,
+                 (double)(rtol / ABUT_SHARE_PEAK), (double)(ABUT_SHARE_PEAK * peak));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -225,7 +236,7 @@ PetscErrorCode AbutSceneSetFromOptions(AbutScene scene)
   if (scene->npairs && scene->adaptor && !scene->interleave) PetscCall(AbutSceneCyclesFromOptions_Private(scene));
   AbutCheckInput(!scene->interleave || scene->adaptor, comm,
                  "scene_interleave: the scene has no adaptor; give adaptor_type, or leave scene_interleave out");
-  PetscCall(AbutSceneCheckEdgeKeys_Private(scene));
+  PetscCall(AbutSceneCheckContactKeys_Private(scene));
   PetscCall(PetscOptionsHasName(NULL, NULL, "-output_profile", &profile));
   AbutCheckInput(!profile || scene->npairs, comm,
                  "output_profile: the scene has no pair to make a profile of; give scene_pairs, or leave it out");

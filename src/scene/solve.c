@@ -79,32 +79,47 @@ static PetscErrorCode AbutSceneEstimate_Private(AbutScene scene, PetscReal norm[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* As long as one body refines, the run goes on; then the worst verdict counts */
+/* One body's cells; no marks: its mesh stays */
+static PetscErrorCode AbutSceneMarkBody_Private(AbutScene scene, PetscInt b, PetscBool *mark[], PetscInt *n, AbutAdaptVerdict *verdict)
+{
+  const AbutMeshTopology *t;
+  AbutMesh                mesh;
+  PetscBool              *peaks;
+
+  PetscFunctionBegin;
+  PetscCall(AbutBodyGetMesh(scene->body[b], &mesh));
+  PetscCall(AbutMeshGetTopology(mesh, &t));
+  PetscCall(PetscCalloc1(t->ncells, &peaks));
+  PetscCall(AbutSceneMarkPeaks_Private(scene, scene->body[b], peaks));
+  PetscCall(PetscMalloc1(t->ncells + 1, mark)); /* not NULL on a rank without cells either */
+  PetscCall(AbutAdaptorMark(scene->adaptor, scene->body[b], scene->eta[b], peaks, *mark, n, verdict));
+  PetscCall(PetscFree(peaks));
+  if (!*n) PetscCall(PetscFree(*mark));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* As long as one body refines or its mesh is to move, the run goes on; then the worst verdict counts */
 static PetscErrorCode AbutSceneMark_Private(AbutScene scene, const PetscReal norm[], PetscBool *marks[], AbutAdaptVerdict *verdict,
                                             PetscInt *nmarked)
 {
   PetscReal target = 0., allowance[ABUT_MAX_NAMES];
+  PetscBool settles;
 
   PetscFunctionBegin;
+  PetscCall(AbutSceneSettles_Private(scene, &settles));
   if (scene->adaptor) PetscCall(AbutAdaptorGetTarget(scene->adaptor, &target));
   if (target > 0.) PetscCall(AbutAdaptorGetAllowances(scene->adaptor, scene->nbodies, scene->body, scene->eta, norm, allowance));
-  *verdict = ABUT_ADAPT_DONE;
+  *verdict = settles ? ABUT_ADAPT_REFINED : ABUT_ADAPT_DONE;
   *nmarked = 0;
   for (PetscInt b = 0; b < scene->nbodies; ++b) {
-    const AbutMeshTopology *t;
-    AbutMesh                mesh;
-    AbutAdaptVerdict        one;
-    PetscInt                n;
+    AbutAdaptVerdict one;
+    PetscInt         n;
 
     marks[b] = NULL;
-    if (!scene->adaptor || !scene->eta[b]) continue;
+    if (!scene->adaptor || !scene->eta[b] || settles) continue;
     if (target > 0.) PetscCall(AbutAdaptorSetAllowance(scene->adaptor, allowance[b]));
-    PetscCall(AbutBodyGetMesh(scene->body[b], &mesh));
-    PetscCall(AbutMeshGetTopology(mesh, &t));
-    PetscCall(PetscMalloc1(t->ncells + 1, &marks[b])); /* not NULL, which says that the mesh stays, on a rank without cells either */
-    PetscCall(AbutAdaptorMark(scene->adaptor, scene->body[b], scene->eta[b], marks[b], &n, &one));
+    PetscCall(AbutSceneMarkBody_Private(scene, b, &marks[b], &n, &one));
     *nmarked += n;
-    if (!n) PetscCall(PetscFree(marks[b])); /* this body's mesh stays */
     if (one == ABUT_ADAPT_REFINED || (*verdict != ABUT_ADAPT_REFINED && one > *verdict)) *verdict = one;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -115,6 +130,7 @@ static PetscErrorCode AbutSceneAdapt_Private(AbutScene scene, PetscBool *const m
 {
   PetscFunctionBegin;
   PetscCall(AbutSceneKeepEdges_Private(scene));
+  scene->settled = PETSC_TRUE;
   if (scene->snes) {
     if (!scene->cold) PetscCall(AbutInterfaceKeepTrace(scene->iface, scene->x));
     PetscCall(VecDestroy(&scene->x));
@@ -124,6 +140,7 @@ static PetscErrorCode AbutSceneAdapt_Private(AbutScene scene, PetscBool *const m
   }
   for (PetscInt b = 0; b < scene->nbodies; ++b) {
     if (!scene->estimates[b]) continue;
+    if (marks[b]) scene->settled = PETSC_FALSE;
     PetscCall(AbutSceneAdaptBody_Private(scene, scene->body[b], marks[b]));
     PetscCall(VecDestroy(&scene->eta[b]));
   }
@@ -172,11 +189,11 @@ static PetscErrorCode AbutSceneOutput_Private(AbutScene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A mesh that is going to be refined need not be solved further than to a part of its own error; the last one is solved to the end. Of
-   the first mesh the error is not known yet. */
+/* A mesh that is going to be refined need not be solved further than to a part of its own error, and of what is asked of the pressure; the
+   last one is solved to the end. Of the first mesh the error is not known yet. */
 static PetscErrorCode AbutSceneLoosen_Private(AbutScene scene, PetscReal *rtol, PetscBool *loose)
 {
-  PetscReal       enough;
+  PetscReal       enough, peak;
   PetscBool       active;
   const PetscReal expected = 0.1;
 
@@ -186,6 +203,8 @@ static PetscErrorCode AbutSceneLoosen_Private(AbutScene scene, PetscReal *rtol, 
   PetscCall(PetscObjectTypeCompare((PetscObject)scene->snes, SNESDDACTIVE, &active));
   PetscCall(SNESGetTolerances(scene->snes, NULL, rtol, NULL, NULL, NULL));
   enough = scene->loop_share * (scene->cycle ? PetscMin(1., scene->discretisation) : expected);
+  PetscCall(AbutAdaptorGetPeak(scene->adaptor, &peak));
+  if (peak > 0.) enough = PetscMin(enough, ABUT_SHARE_PEAK * peak);
   *loose = (PetscBool)(active && enough > *rtol);
   if (*loose) PetscCall(SNESSetTolerances(scene->snes, 0., enough, 0., PETSC_DEFAULT, PETSC_DEFAULT));
   PetscFunctionReturn(PETSC_SUCCESS);

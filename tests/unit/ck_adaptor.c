@@ -40,7 +40,7 @@ static AbutAdaptVerdict Mark(const char options[], AbutBody body, PetscReal high
   }
   CkOk(VecRestoreArray(eta, &e));
   CkOk(PetscMalloc1(t->ncells, &mark));
-  CkOk(AbutAdaptorMark(adaptor, body, eta, mark, marked, &verdict));
+  CkOk(AbutAdaptorMark(adaptor, body, eta, NULL, mark, marked, &verdict));
   for (PetscInt c = 0; c < t->ncells; ++c) {
     Middle(t, c, x);
     count[0] += mark[c];
@@ -186,7 +186,7 @@ static void Share(PetscReal target, PetscInt n, AbutBody body[], const PetscReal
 
     CkOk(PetscMalloc1(CkTopology(body[b])->ncells, &mark));
     CkOk(AbutAdaptorSetAllowance(adaptor, allowance[b]));
-    CkOk(AbutAdaptorMark(adaptor, body[b], eta[b], mark, &marked[b], &verdict));
+    CkOk(AbutAdaptorMark(adaptor, body[b], eta[b], NULL, mark, &marked[b], &verdict));
     ck_assert_int_eq(verdict, marked[b] ? ABUT_ADAPT_REFINED : ABUT_ADAPT_DONE);
     CkOk(PetscFree(mark));
     CkOk(VecDestroy(&eta[b]));

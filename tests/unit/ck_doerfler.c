@@ -77,7 +77,7 @@ static void Mark(PetscReal bulk, PetscReal target, Square square, const PetscRea
 
     CkOk(PetscMalloc1(t->ncells, &m));
     CkOk(AbutAdaptorSetAllowance(adaptor, allowance[b]));
-    CkOk(AbutAdaptorMark(adaptor, body[b], eta[b], m, &n, &verdict));
+    CkOk(AbutAdaptorMark(adaptor, body[b], eta[b], NULL, m, &n, &verdict));
     ck_assert_int_eq(verdict, n ? ABUT_ADAPT_REFINED : ABUT_ADAPT_DONE);
     for (PetscInt c = 0; c < t->ncells; ++c) {
       PetscInt i, j;

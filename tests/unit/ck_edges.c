@@ -1,8 +1,9 @@
 #include "ckbody.h"
 #include <abutpair.h>
+#include <petscdt.h>
 
-/* The edges of a contact, from traces whose penetration is known. The meshes match, so that the averaged penetration of a node is that of
-   the trace at the node, up to order 4. */
+/* The edges of a contact and its peaks, from traces whose penetration is known. The meshes match, so that the averaged penetration of a
+   node is that of the trace at the node, up to order 4. */
 
 #define LENGTH 4.
 
@@ -119,6 +120,75 @@ START_TEST(no_more_edges_than_there_is_room_for)
 }
 END_TEST
 
+/* Of the pressure on an element, by Gauss's formula; at order 1 the pressure is c - x^2/20, and its distance from a line in the middle of
+   the element h^2/80 */
+static PetscReal LastCoefficient(PetscInt order, PetscReal h, const PetscReal q[])
+{
+  PetscReal z[8], w[8], L, N[ABUT_SIDE_NODES_MAX], sum = 0.;
+
+  if (order == 1) return h * h / 80.;
+  CkOk(PetscDTGaussQuadrature(8, -1., 1., z, w));
+  for (PetscInt k = 0; k < 8; ++k) {
+    CkOk(PetscDTLegendreEval(1, &z[k], 1, &order, &L, NULL, NULL));
+    CkOk(AbutEvaluateLobatto(order, z[k], N, NULL));
+    for (PetscInt i = 0; i <= order; ++i) sum += (order + 0.5) * w[k] * L * N[i] * q[i];
+  }
+  return PetscAbsReal(sum);
+}
+
+/* Those of the definition, with coefficients by another formula; for a peak inside the side and at both of its ends */
+START_TEST(peaks_are_the_elements_of_the_largest_pressure)
+{
+  const PetscReal tops[] = {2.5, 0., 4.};
+
+  for (PetscInt order = 1; order <= ABUT_ORDER_MAX; ++order)
+    for (PetscInt k = 0; k < 6; ++k) {
+      Contact   c = Make(order, 0., "first");
+      AbutPeak  peak[32];
+      PetscReal q[32 * ABUT_ORDER_MAX + 1], largest = 0., tolerance;
+      PetscInt  n, found = 0, first = 0;
+
+      for (PetscInt i = 0; i < c.n; ++i) {
+        const PetscReal s = c.x[2 * i] - tops[k % 3];
+
+        c.p[i] = 2. - s * s / 20. + (order > 1 ? 0.1 * PetscCosReal(3. * s) : 0.);
+      }
+      if (order > 1) CkOk(AbutPairRecoverPressure(c.pair, c.p, q));
+      else CkOk(PetscArraycpy(q, c.p, c.n));
+      for (PetscInt i = 0; i < c.n; ++i) {
+        if (q[i] > largest && i < c.n - 1) first = i - i % order;
+        largest = PetscMax(largest, q[i]);
+      }
+      tolerance = LastCoefficient(order, LENGTH / 32., q + first) * (k < 3 ? 0.9 : 0.2) / largest;
+      CkOk(AbutPairGetPeaks(c.pair, c.p, tolerance, 32, &n, peak));
+      for (PetscInt e = 0; e < 32; ++e) {
+        const PetscReal last = LastCoefficient(order, LENGTH / 32., q + order * e) / largest;
+        PetscInt        top  = order * e;
+
+        for (PetscInt i = order * e; i <= order * (e + 1); ++i)
+          if (q[i] > q[top]) top = i;
+        if (q[top] < (1. - tolerance) * largest || last <= tolerance) continue;
+        ck_assert_int_lt(found, n);
+        ck_assert_double_eq_tol(peak[found].x[0], c.x[2 * top], 1e-12);
+        ck_assert_double_eq_tol(peak[found].x[1], 1., 1e-12);
+        ck_assert_double_eq_tol(peak[found].length, LENGTH / 32., 1e-12);
+        ck_assert_double_eq_tol(peak[found].last / last, 1., 1e-6);
+        ++found;
+      }
+      ck_assert_int_eq(n, found);
+      ck_assert_int_ge(found, 1);
+      CkOk(AbutPairGetPeaks(c.pair, c.p, tolerance, 1, &n, peak));
+      ck_assert_int_eq(n, 1);
+      CkOk(AbutPairGetPeaks(c.pair, c.p, 0.5, 32, &n, peak)); /* all elements hold it, and resolve it */
+      ck_assert_int_eq(n, 0);
+      CkOk(PetscArrayzero(c.p, c.n));
+      CkOk(AbutPairGetPeaks(c.pair, c.p, tolerance, 32, &n, peak));
+      ck_assert_int_eq(n, 0);
+      Destroy(&c);
+    }
+}
+END_TEST
+
 int main(int argc, char **argv)
 {
   Suite *suite = suite_create("edges");
@@ -127,6 +197,7 @@ int main(int argc, char **argv)
 
   PetscCall(AbutInitialize(&argc, &argv, NULL));
   tcase_add_test(tests, edges_are_found_where_they_are);
+  tcase_add_test(tests, peaks_are_the_elements_of_the_largest_pressure);
   tcase_add_test(tests, no_more_edges_than_there_is_room_for);
   suite_add_tcase(suite, tests);
   status = CkRun(suite);

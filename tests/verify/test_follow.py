@@ -59,6 +59,22 @@ def test_high_orders_follow_by_default_and_gain_by_it():
         assert abs(last[0]["pair.mid.contact_edge"] - A) < 0.005 * last[0]["body.lower.hmin"], (order, last[0]["pair.mid.contact_edge"])
 
 
+def test_meshes_that_settle():
+    """Every mesh is solved twice, and the vertex of the second one lies where the first one found the edge; the tolerance counts for the second"""
+    adaptor = "type: doerfler, target: 3e-3, bulk: 0.7, jump: 3"
+    order = "-lower_mesh_order 3 -upper_mesh_order 3"
+    once, twice = (follow(order, adaptor=adaptor, moves=f", settle: {settle}") for settle in ("no", "yes"))
+    cells = [row["body.lower.cells"] for row in twice[0]]
+    assert len(cells) % 2 == 0 and cells[::2] == cells[1::2] and len(set(cells)) == len(cells) // 2 > 2, cells
+    assert [row["pair.mid.tied"] for row in twice[0]] == [0] + [2] * (len(cells) - 1), twice
+    found = twice[0][-2]["pair.mid.contact_edge"]
+    for nodes in twice[1]:
+        assert min(abs(node - found) for node in nodes) < 1e-9, (nodes, found)
+    # of the second mesh, whose cells at the edge are three levels finer: how far the tied vertex, which the solve before found, is from the edge
+    miss = once[0][0]["pair.mid.contact_edge"] - A, twice[0][2]["pair.mid.contact_edge"] - A
+    assert abs(miss[1]) < abs(miss[0]) / 10, miss
+
+
 def test_several_edges_on_one_side():
     """Two bumps, mirror images at x = 2: four edges on each side"""
     cycles, sides, pressures = follow("-mid_pair_gap", "1e-3*min((x-1.1)^2,(x-2.9)^2)+2e-4", "-upper_bc_top_u2 -0.6e-3", "-upper_mesh_cells 16,4 -lower_mesh_cells 12,3")

@@ -21,6 +21,12 @@ typedef struct {
   PetscReal x[2];
 } AbutContactEdge;
 
+#define ABUT_TOUCH 1e-6 /* of the length of an element: what is that near touches it */
+
+/* Of -adaptor_peak, what the loop may leave: on two layers of order 3 that moves the largest pressure by a fifth of it, 0.3 of it by
+   several times as much, and more the smaller the cells */
+#define ABUT_SHARE_PEAK 0.1
+
 /* Where the seconds of a run went */
 typedef enum {
   ABUT_TIME_SETUP,
@@ -65,6 +71,7 @@ struct _p_AbutScene {
 
   PetscInt         nedges; /* of the last meshes that changed */
   AbutContactEdge *edge;
+  PetscBool        settled;              /* the meshes have the cells of the last ones, and moved */
   PetscInt         tied[ABUT_MAX_NAMES]; /* vertices of the meshes that were moved to an edge of each pair */
 };
 
@@ -82,9 +89,13 @@ PETSC_INTERN PetscErrorCode AbutScenePrintCycle_Private(AbutScene, PetscInt);
 PETSC_INTERN PetscErrorCode AbutScenePrintEnd_Private(AbutScene);
 /* edges.c */
 PETSC_INTERN PetscErrorCode AbutSceneKeepEdges_Private(AbutScene);
+PETSC_INTERN PetscBool      AbutSideTouches_Private(const AbutMeshTopology *, PetscInt, const PetscReal[2]);
+PETSC_INTERN PetscErrorCode AbutSceneSettles_Private(AbutScene, PetscBool *);
 PETSC_INTERN PetscErrorCode AbutSceneAdaptBody_Private(AbutScene, AbutBody, const PetscBool[]);
 PETSC_INTERN PetscErrorCode AbutSceneFollows_Private(AbutScene, PetscBool *);
 PETSC_INTERN PetscErrorCode AbutSceneRecordTies_Private(AbutScene);
+/* peaks.c */
+PETSC_INTERN PetscErrorCode AbutSceneMarkPeaks_Private(AbutScene, AbutBody, PetscBool[]);
 /* budget.c */
 PETSC_INTERN PetscErrorCode AbutSceneGetDiscretisation_Private(AbutScene, PetscReal *, PetscReal[]);
 PETSC_INTERN PetscErrorCode AbutSceneRecordBudget_Private(AbutScene);
