@@ -3,6 +3,8 @@
 
 /* Solves of a body, and what became of them */
 
+#define ABUT_INCREMENT 1e-4 /* relative tolerance of an increment, at most */
+
 /* Displacement at every local node: at a hanging one that of the coarse side */
 PetscErrorCode AbutBodySpread_Private(AbutBody body)
 {
@@ -101,6 +103,7 @@ PetscErrorCode AbutBodySolve(AbutBody body, Vec contact)
   if (contact) PetscCall(VecCopy(contact, body->contact));
   else PetscCall(VecZeroEntries(body->contact));
   PetscCall(AbutBodyRightHandSide_Private(body, body->rhs));
+  PetscCall(VecNorm(body->rhs, NORM_2, &body->whole));
   PetscCall(AbutBodySolveLinear_Private(body, body->u));
   PetscCall(AbutBodySpread_Private(body));
   PetscCall(PetscLogEventEnd(ABUTBODY_Solve, body, 0, 0, 0));
@@ -125,13 +128,16 @@ PetscErrorCode AbutBodySolve(AbutBody body, Vec contact)
    Counts as a solve, except for contact forces that are all zero, which cost nothing. Whether the linear solver converged is asked of its
    `KSP`; after a failure w may be zero.
 
+   An iterative solver need not leave less than it left in `AbutBodySolve()`: its relative tolerance is that one's, in proportion to the
+   sizes of the right-hand sides, up to a ten thousandth, with which the loops still take no more sweeps than with exact answers.
+
    With free modes, what the forces have along them is left out, and w has no part along them.
 
 .seealso: `AbutBodyUpdate()`, `AbutBodySolve()`, `AbutBodyGetKSP()`
 @*/
 PetscErrorCode AbutBodySolveIncrement(AbutBody body, Vec contact, Vec w)
 {
-  PetscReal size;
+  PetscReal size, rtol;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, ABUTBODY_CLASSID, 1);
@@ -140,9 +146,16 @@ PetscErrorCode AbutBodySolveIncrement(AbutBody body, Vec contact, Vec w)
   PetscCall(VecCopy(contact, body->rhs));
   PetscCall(VecISSet(body->rhs, body->constrained, 0.));
   PetscCall(VecZeroEntries(w));
-  PetscCall(VecNorm(body->rhs, NORM_INFINITY, &size));
+  PetscCall(VecNorm(body->rhs, NORM_2, &size));
+  PetscCall(KSPGetTolerances(body->ksp, &rtol, NULL, NULL, NULL));
   if (size == 0.) body->ksp->reason = KSP_CONVERGED_ATOL;
-  else PetscCall(AbutBodySolveLinear_Private(body, w));
+  else {
+    const PetscReal enough = PetscMax(rtol, PetscMin(ABUT_INCREMENT, rtol * body->whole / size));
+
+    PetscCall(KSPSetTolerances(body->ksp, enough, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
+    PetscCall(AbutBodySolveLinear_Private(body, w));
+    PetscCall(KSPSetTolerances(body->ksp, rtol, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
+  }
   PetscCall(PetscLogEventEnd(ABUTBODY_Solve, body, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -49,6 +49,7 @@ struct _p_AbutBody {
   KSP       ksp;
   PetscBool userksp; /* the user chose the solver: size does not */
   PetscInt  solves, iterations;
+  PetscReal whole;                    /* size of the right-hand side of the last AbutBodySolve() */
   PetscReal assemblytime, factortime; /* seconds, of all meshes */
   PetscInt  assemblycells;
   PetscReal setupcpu; /* processor seconds of AbutBodySetUp() on the present mesh */
