@@ -69,6 +69,41 @@ START_TEST(every_solver_finds_the_displacement_of_the_direct_one)
 }
 END_TEST
 
+/* Small increments take few iterations, large ones as many as the first solve, and none spoils what the first solve left */
+START_TEST(an_increment_is_solved_as_far_as_the_whole)
+{
+  const PetscReal size[] = {1e-6, 1e-3, 10.};
+  AbutBody        body   = Layer("-body_pc_type hypre -body_ksp_type cg -body_ksp_rtol 1e-10");
+  PetscInt        solves, before, after, first, taken[3];
+  Vec             force, w, load;
+  PetscReal       whole, residual;
+
+  CkOk(AbutBodyGetSolveCounts(body, &solves, &first));
+  CkOk(AbutBodyCreateVec(body, &force));
+  CkOk(VecDuplicate(force, &w));
+  CkOk(VecDuplicate(force, &load));
+  CkOk(VecSetRandom(load, NULL));
+  CkOk(VecNorm(load, NORM_2, &whole));
+  for (PetscInt i = 0; i < 3; ++i) {
+    CkOk(VecAXPBY(force, 500. * size[i] / whole, 0., load));
+    CkOk(AbutBodyGetSolveCounts(body, &solves, &before));
+    CkOk(AbutBodySolveIncrement(body, force, w));
+    CkOk(AbutBodyGetSolveCounts(body, &solves, &after));
+    taken[i] = after - before;
+    CkOk(AbutBodyUpdate(body, force, w));
+    CkOk(AbutBodyGetLinearResidual(body, &residual));
+    ck_assert_double_lt(residual, 3e-10);
+  }
+  ck_assert_int_le(3 * taken[0], 2 * taken[2]);
+  ck_assert_int_ge(taken[2], first);
+  ck_assert_int_ge(taken[0], 2); /* a ten thousandth all the same */
+  CkOk(VecDestroy(&force));
+  CkOk(VecDestroy(&w));
+  CkOk(VecDestroy(&load));
+  CkOk(AbutBodyDestroy(&body));
+}
+END_TEST
+
 START_TEST(without_options_a_direct_solver_is_taken)
 {
   CkField       linear = {.at = CkLinear};
@@ -192,6 +227,7 @@ int main(int argc, char **argv)
   if (AbutInitialize(&argc, &argv, NULL)) return EXIT_FAILURE;
   tcase_set_timeout(tc, 0);
   tcase_add_loop_test(tc, every_solver_finds_the_displacement_of_the_direct_one, 0, 6);
+  tcase_add_test(tc, an_increment_is_solved_as_far_as_the_whole);
   tcase_add_test(tc, without_options_a_direct_solver_is_taken);
   tcase_add_test(tc, the_solver_goes_along_when_the_mesh_adapts);
   tcase_add_test(tc, a_body_is_described_by_its_keys);
