@@ -28,12 +28,14 @@ MARKINGS = {
     "bulk .7, jump 3": "-adaptor_bulk 0.7 -adaptor_jump 3",
 }
 PEAKS = {  # with the peak pressure asked for, and meshes solved twice
-    f"{name}, peak {peak}{settle}": f"{MARKINGS[name]} -adaptor_peak {peak}" + (" -adaptor_settle yes" if settle else "")
-    for name in ("bulk .5", "bulk .7, jump 2", "bulk .6, jump 3")
+    f"{name}, peak {peak}{settle}": f"{marking} -adaptor_peak {peak}" + (" -adaptor_settle yes" if settle else "")
+    for name, marking in {**MARKINGS, "bulk .4, jump 3": "-adaptor_bulk 0.4 -adaptor_jump 3"}.items()
+    if name not in ("bulk .7", "bulk .7, jump 3")
     for peak, settle in (("1e-4", ", settled"), ("5e-6", ", settled"), ("5e-6", ""))
 }
 LINEAR = {  # of order 1: steps small enough not to jump over an error, and pressures on the stiffer of two bodies
     "bulk .3": "-adaptor_bulk 0.3",
+    "bulk .4": "-adaptor_bulk 0.4",
     "bulk .5, pressures on upper": "-adaptor_bulk 0.5 -mid_pair_pressure_side first",
 }
 FOLLOWING = ("yes", "no")
