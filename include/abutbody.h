@@ -55,6 +55,8 @@ PETSC_EXTERN PetscErrorCode AbutBodyGetFreeMotion(AbutBody, PetscInt, const Pets
 PETSC_EXTERN PetscErrorCode AbutBodyGetFreeModes(AbutBody, PetscInt *, const Vec *[]);
 PETSC_EXTERN PetscErrorCode AbutBodyGetImbalance(AbutBody, PetscBool, PetscReal[]);
 
+PETSC_EXTERN PetscErrorCode AbutBodyArchive(AbutBody, AbutArchive);
+
 /* Solve with the given nodal contact forces (a vector of AbutBodyCreateVec(), or NULL for none); the displacement stays in the body */
 PETSC_EXTERN PetscErrorCode AbutBodySolve(AbutBody, Vec);
 PETSC_EXTERN PetscErrorCode AbutBodySolveIncrement(AbutBody, Vec, Vec);

@@ -41,6 +41,8 @@ PETSC_EXTERN PetscErrorCode AbutInterfaceGetSweeps(AbutInterface, PetscInt *, Pe
 PETSC_EXTERN PetscErrorCode AbutInterfaceSweepBest(AbutInterface, Vec);
 PETSC_EXTERN PetscErrorCode AbutInterfaceKeepTrace(AbutInterface, Vec);
 PETSC_EXTERN PetscErrorCode AbutInterfaceTransferTrace(AbutInterface, Vec);
+PETSC_EXTERN PetscErrorCode AbutInterfaceArchive(AbutInterface, AbutArchive);
+PETSC_EXTERN PetscErrorCode AbutInterfaceArchiveTrace(AbutInterface, AbutArchive, Vec);
 PETSC_EXTERN PetscErrorCode AbutInterfaceGetChange(AbutInterface, Vec, Vec, PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutInterfaceSetGamma(AbutInterface, PetscReal);
 PETSC_EXTERN PetscErrorCode AbutInterfaceGetGamma(AbutInterface, PetscReal *);

@@ -79,6 +79,8 @@ PETSC_EXTERN PetscErrorCode AbutMeshFindSide(AbutMesh, const char[], const char[
 PETSC_EXTERN PetscErrorCode AbutMeshGetSideEnds(AbutMesh, PetscInt, PetscReal[4], PetscReal[2]);
 PETSC_EXTERN PetscErrorCode AbutMeshAdapt(AbutMesh, const PetscBool[]);
 PETSC_EXTERN PetscErrorCode AbutMeshGetGeneration(AbutMesh, PetscInt *);
+PETSC_EXTERN PetscErrorCode AbutMeshKeepJournal(AbutMesh);
+PETSC_EXTERN PetscErrorCode AbutMeshArchive(AbutMesh, AbutArchive);
 
 /* A vertex on a side of the box that is held at a position; positions are the coordinate that runs along the side, length */
 typedef struct {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <petscsys.h>
+#include <stdio.h>
 #include <abut/private/abutretro.h>
 
 PETSC_EXTERN PetscErrorCode AbutInitialize(int *, char ***, const char[]);
@@ -39,6 +40,37 @@ PETSC_EXTERN PetscErrorCode AbutExpressionCreateFunction(AbutPointFunction, void
 PETSC_EXTERN PetscErrorCode AbutExpressionEvaluate(AbutExpression, const PetscReal[2], PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutExpressionGetText(AbutExpression, const char *[]);
 PETSC_EXTERN PetscErrorCode AbutExpressionDestroy(AbutExpression *);
+
+/* Files that are never half written */
+typedef void (*AbutFileWriter)(FILE *, const void *ctx);
+PETSC_EXTERN PetscErrorCode AbutFileCheckPath(MPI_Comm, const char[], const char[]);
+PETSC_EXTERN PetscErrorCode AbutFileWrite(MPI_Comm, const char[], AbutFileWriter, const void *);
+PETSC_EXTERN PetscErrorCode AbutFileCopyAside(MPI_Comm, const char[]);
+PETSC_EXTERN PetscErrorCode AbutFileRename(MPI_Comm, const char[]);
+
+/*S
+   AbutArchive - Values by name, into a file or out of one: the same calls write and read, so that both agree
+
+   Level: developer
+
+   Notes:
+   An archive is filled, value after value, and written; or opened, and gives the values in the same order. A value of another name, kind
+   or number than asked for, a file that is cut off, damaged, of another version or no archive is a bad input that names the file.
+
+   Limits: the file is held in memory, on rank 0 while it is filled and on all ranks while it is read.
+
+.seealso: `AbutArchiveCreate()`, `AbutArchiveOpen()`
+S*/
+typedef struct _n_AbutArchive *AbutArchive;
+PETSC_EXTERN PetscErrorCode    AbutArchiveCreate(MPI_Comm, AbutArchive *);
+PETSC_EXTERN PetscErrorCode    AbutArchiveOpen(MPI_Comm, const char[], const char[], AbutArchive *);
+PETSC_EXTERN PetscErrorCode    AbutArchiveWrite(AbutArchive, const char[]);
+PETSC_EXTERN PetscErrorCode    AbutArchiveReads(AbutArchive, PetscBool *);
+PETSC_EXTERN PetscErrorCode    AbutArchiveInts(AbutArchive, const char[], PetscInt, PetscInt[]);
+PETSC_EXTERN PetscErrorCode    AbutArchiveReals(AbutArchive, const char[], PetscInt, PetscReal[]);
+PETSC_EXTERN PetscErrorCode    AbutArchiveString(AbutArchive, const char[], char **);
+PETSC_EXTERN PetscErrorCode    AbutArchiveFit(AbutArchive, const char[], const char[]);
+PETSC_EXTERN PetscErrorCode    AbutArchiveDestroy(AbutArchive *);
 
 PETSC_EXTERN PetscErrorCode AbutGetProcessorTime(PetscLogDouble *);
 PETSC_EXTERN PetscErrorCode AbutSolveBand(PetscInt, PetscInt, PetscReal[], PetscInt, PetscReal[]);

@@ -270,6 +270,36 @@ static PetscErrorCode AbutBodyCreateResidual_Private(AbutBody body, Vec *r, Pets
 }
 
 /*@
+   AbutBodyArchive - The mesh of a body and its counts of solves into an archive, or out of one
+
+   Collective
+
+   Input Parameters:
++  body - the body, whose mesh keeps a journal
+-  ar   - the archive
+
+   Level: developer
+
+   Note:
+   Displacements are not in it: the next solve finds them.
+
+.seealso: `AbutMeshArchive()`, `AbutBodyGetSolveCounts()`
+@*/
+PetscErrorCode AbutBodyArchive(AbutBody body, AbutArchive ar)
+{
+  PetscInt count[2] = {body->solves, body->iterations};
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, ABUTBODY_CLASSID, 1);
+  PetscCall(AbutArchiveFit(ar, "body", ((PetscObject)body)->name));
+  PetscCall(AbutMeshArchive(body->mesh, ar));
+  PetscCall(AbutArchiveInts(ar, "solves", 2, count));
+  body->solves     = count[0];
+  body->iterations = count[1];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
    AbutBodyGetLinearResidual - The true residual of a body as it now is, after solves, updates and moves
 
    Collective

@@ -129,3 +129,84 @@ PetscErrorCode AbutInterfaceTransferPressure_Private(AbutInterface iface)
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+static PetscErrorCode AbutOldTraceArchive_Private(AbutOldTrace *old, AbutArchive ar)
+{
+  PetscBool reads;
+
+  PetscFunctionBegin;
+  PetscCall(AbutArchiveReads(ar, &reads));
+  PetscCall(AbutArchiveInts(ar, "nodes of a side", 1, &old->n));
+  if (reads) {
+    PetscCall(PetscFree2(old->x, old->value));
+    PetscCall(PetscMalloc2(2 * old->n, &old->x, old->n, &old->value));
+  }
+  PetscCall(AbutArchiveReals(ar, "their places", 2 * old->n, old->x));
+  PetscCall(AbutArchiveReals(ar, "their values", old->n, old->value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutInterfaceArchive - What goes from mesh to mesh into an archive, or out of one: kept traces, pressures, counts of sweeps
+
+   Collective
+
+   Input Parameters:
++  iface - the map
+-  ar    - the archive
+
+   Level: developer
+
+.seealso: `AbutInterfaceKeepTrace()`, `AbutInterfaceArchiveTrace()`
+@*/
+PetscErrorCode AbutInterfaceArchive(AbutInterface iface, AbutArchive ar)
+{
+  PetscInt state[3] = {iface->sweeps, iface->startsweeps, iface->warm};
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(iface, ABUTINTERFACE_CLASSID, 1);
+  for (PetscInt i = 0; i < iface->npairs; ++i) {
+    const char *name;
+
+    PetscCall(AbutPairGetName(iface->pair[i], &name));
+    PetscCall(AbutArchiveFit(ar, "pair", name));
+  }
+  PetscCall(AbutArchiveInts(ar, "sweeps", 3, state));
+  iface->sweeps      = state[0];
+  iface->startsweeps = state[1];
+  iface->warm        = (PetscBool)state[2];
+  for (PetscInt t = 0; t < 2 * iface->npairs; ++t) PetscCall(AbutOldTraceArchive_Private(&iface->old[t], ar));
+  for (PetscInt i = 0; i < iface->npairs; ++i) PetscCall(AbutOldTraceArchive_Private(&iface->oldpressure[i], ar));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutInterfaceArchiveTrace - A trace on the present meshes into an archive, or out of one
+
+   Collective
+
+   Input Parameters:
++  iface - the map, set up
+.  ar    - the archive
+-  x     - the trace
+
+   Level: developer
+
+.seealso: `AbutInterfaceArchive()`, `AbutInterfaceCreateVec()`
+@*/
+PetscErrorCode AbutInterfaceArchiveTrace(AbutInterface iface, AbutArchive ar, Vec x)
+{
+  const PetscInt n = iface->offset[2 * iface->npairs];
+  PetscReal     *full;
+  PetscBool      reads;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(iface, ABUTINTERFACE_CLASSID, 1);
+  PetscCall(AbutArchiveReads(ar, &reads));
+  PetscCall(PetscMalloc1(n, &full));
+  if (!reads) PetscCall(AbutInterfaceReplicate_Private(iface, x, full));
+  PetscCall(AbutArchiveReals(ar, "trace", n, full));
+  if (reads) PetscCall(AbutInterfaceLocalize_Private(iface, full, x));
+  PetscCall(PetscFree(full));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

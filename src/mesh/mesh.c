@@ -252,6 +252,7 @@ PetscErrorCode AbutMeshAdapt(AbutMesh mesh, const PetscBool marks[])
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &splits, 1, MPIU_BOOL, MPI_LOR, PetscObjectComm((PetscObject)mesh)));
   if (!splits && !mesh->tiesmoved) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscLogEventBegin(ABUTMESH_Adapt, mesh, 0, 0, 0));
+  PetscCall(AbutJournalAdapt_Private(mesh, splits, marks));
   if (splits) PetscUseTypeMethod(mesh, refine, marks, &dm);
   else {
     dm = mesh->dm;
@@ -429,6 +430,7 @@ PetscErrorCode AbutMeshDestroy(AbutMesh *mesh)
   PetscCall(AbutMeshTopologyReset_Private(*mesh));
   PetscCall(DMDestroy(&(*mesh)->dm));
   for (PetscInt side = 0; side < ABUT_BOX_SIDES; ++side) PetscCall(PetscFree((*mesh)->knot[side]));
+  PetscCall(AbutJournalDestroy_Private(*mesh));
   PetscTryTypeMethod(*mesh, destroy);
   PetscCall(AbutExpressionDestroy(&(*mesh)->size));
   PetscCall(PetscHeaderDestroy(mesh));

@@ -164,6 +164,7 @@ PetscErrorCode AbutMeshSetTies(AbutMesh mesh, PetscInt n, const AbutTie tie[])
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(mesh, ABUTMESH_CLASSID, 1);
+  PetscCall(AbutJournalTies_Private(mesh, n, tie));
   for (PetscInt side = 0; side < ABUT_BOX_SIDES; ++side) {
     PetscCall(PetscMalloc1(n, &sorted[side]));
     PetscCall(AbutTiesSort_Private(mesh, side, n, tie, &count[side], sorted[side]));

@@ -83,7 +83,7 @@ PetscErrorCode AbutRecorderSetFromOptions(AbutRecorder rec)
   path[3] = rec->profile_file;
   for (PetscInt i = 0; i < 4; ++i) {
     if (!path[i]) continue;
-    PetscCall(AbutFileCheckPath_Private(comm, key[i], path[i]));
+    PetscCall(AbutFileCheckPath(comm, key[i], path[i]));
     for (PetscInt j = 0; j < i; ++j) {
       AbutCheckInput(!path[j] || strcmp(path[i], path[j]), comm, "%s: '%s' is also the file of %s; name two files", key[i], path[i],
                      key[j]);

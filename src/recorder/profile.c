@@ -116,7 +116,7 @@ PetscErrorCode AbutRecorderWriteProfile(AbutRecorder rec, AbutInterface iface, P
   if (!rec->profile_file) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(npairs, &p.pair));
   for (PetscInt i = 0; i < npairs; ++i) PetscCall(AbutRecorderCollectPair_Private(iface, i, pairs[i], &p.pair[i]));
-  PetscCall(AbutFileWrite_Private(PetscObjectComm((PetscObject)rec), rec->profile_file, WriteProfile, &p));
+  PetscCall(AbutFileWrite(PetscObjectComm((PetscObject)rec), rec->profile_file, WriteProfile, &p));
   for (PetscInt i = 0; i < npairs; ++i) PetscCall(PetscFree(p.pair[i].gap));
   PetscCall(PetscFree(p.pair));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -282,7 +282,7 @@ PetscErrorCode AbutRecorderEndCycle(AbutRecorder rec)
   row    = &rec->row[rec->nrows++];
   row->n = rec->nkeys;
   PetscCall(PetscStrNArrayallocpy(row->n, (const char *const *)rec->value, &row->value));
-  PetscCall(AbutFileWrite_Private(PetscObjectComm((PetscObject)rec), rec->csv_file, WriteCSV, rec));
+  PetscCall(AbutFileWrite(PetscObjectComm((PetscObject)rec), rec->csv_file, WriteCSV, rec));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -307,7 +307,7 @@ PetscErrorCode AbutRecorderWrite(AbutRecorder rec)
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(rec, ABUTRECORDER_CLASSID, 1);
-  if (rec->record_file) PetscCall(AbutFileWrite_Private(comm, rec->record_file, WriteRecord, rec));
-  if (rec->csv_file) PetscCall(AbutFileWrite_Private(comm, rec->csv_file, WriteCSV, rec));
+  if (rec->record_file) PetscCall(AbutFileWrite(comm, rec->record_file, WriteRecord, rec));
+  if (rec->csv_file) PetscCall(AbutFileWrite(comm, rec->csv_file, WriteCSV, rec));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -112,7 +112,7 @@ static PetscErrorCode AbutRecorderWritePart_VTU(AbutRecorder rec, const AbutReco
   for (int i = 0; i < 7; ++i) PetscCall(AbutRecorderGather_VTU(i ? field[i] : cells, &all[i], array[i]));
   PetscCall(VecDestroy(&cells));
   PetscCall(PetscSNPrintf(path, sizeof(path), "%s_%s_%04" PetscInt_FMT ".vtu", rec->output, part->body, part->cycle));
-  PetscCall(AbutFileWrite_Private(PetscObjectComm((PetscObject)rec), path, WriteBody, &a));
+  PetscCall(AbutFileWrite(PetscObjectComm((PetscObject)rec), path, WriteBody, &a));
   for (int i = 0; i < 7; ++i) PetscCall(AbutRecorderRelease_VTU(&all[i], array[i]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -140,7 +140,7 @@ static PetscErrorCode AbutRecorderEndCycle_VTU(AbutRecorder rec)
 
   PetscFunctionBegin;
   PetscCall(PetscSNPrintf(path, sizeof(path), "%s.pvd", rec->output));
-  PetscCall(AbutFileWrite_Private(PetscObjectComm((PetscObject)rec), path, WriteIndex, rec));
+  PetscCall(AbutFileWrite(PetscObjectComm((PetscObject)rec), path, WriteIndex, rec));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -19,7 +19,7 @@ static PetscErrorCode AbutRecorderBeginCycle_XDMF(AbutRecorder rec)
   PetscFunctionBegin;
   PetscCall(AbutRecorderGetPath_XDMF(rec, ".h5", path, sizeof(path)));
   PetscCall(AbutRecorderGetPath_XDMF(rec, ".h5.part", aside, sizeof(aside)));
-  if (rec->nparts) PetscCall(AbutFileCopyAside_Private(comm, path));
+  if (rec->nparts) PetscCall(AbutFileCopyAside(comm, path));
   PetscCall(PetscViewerHDF5Open(comm, aside, rec->nparts ? FILE_MODE_APPEND : FILE_MODE_WRITE, &rec->viewer));
   PetscCall(PetscViewerHDF5SetBaseDimension2(rec->viewer, PETSC_FALSE)); /* a scalar field is one-dimensional, whatever the options say */
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -149,9 +149,9 @@ static PetscErrorCode AbutRecorderEndCycle_XDMF(AbutRecorder rec)
   PetscFunctionBegin;
   PetscCall(PetscViewerDestroy(&rec->viewer));
   PetscCall(AbutRecorderGetPath_XDMF(rec, ".h5", path, sizeof(path)));
-  PetscCall(AbutFileRename_Private(comm, path));
+  PetscCall(AbutFileRename(comm, path));
   PetscCall(AbutRecorderGetPath_XDMF(rec, ".xdmf", path, sizeof(path)));
-  PetscCall(AbutFileWrite_Private(comm, path, WriteIndex, rec));
+  PetscCall(AbutFileWrite(comm, path, WriteIndex, rec));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -2,8 +2,9 @@
 
 /* What a scene names is made, and only that */
 
-static const char *const AbutReservedNames[] = {"scene",     "snes",   "npc",    "ksp",    "pc",  "mat",     "vec",    "dm",   "adaptor",
-                                                "estimator", "record", "output", "plugin", "log", "options", "malloc", "help", NULL};
+static const char *const AbutReservedNames[] = {"scene",   "snes",    "npc",       "ksp",        "pc",      "mat",    "vec",
+                                                "dm",      "adaptor", "estimator", "record",     "output",  "plugin", "log",
+                                                "options", "malloc",  "help",      "checkpoint", "restart", NULL};
 
 /* A comma-separated list of names; names are prefixes of keys, so no two may be equal, nor equal to the prefix of a class */
 PetscErrorCode AbutSceneReadNames_Private(AbutScene scene, AbutOptionItems PetscOptionsObject, const char opt[], const char text[],
@@ -242,5 +243,6 @@ PetscErrorCode AbutSceneSetFromOptions(AbutScene scene)
                  "output_profile: the scene has no pair to make a profile of; give scene_pairs, or leave it out");
   PetscCall(AbutRecorderCreate(comm, &scene->recorder));
   PetscCall(AbutRecorderSetFromOptions(scene->recorder));
+  PetscCall(AbutSceneCheckpointFromOptions_Private(scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -60,6 +60,7 @@ PetscErrorCode AbutSceneSetUp(AbutScene scene)
   for (PetscInt i = 0; i < scene->npairs; ++i) PetscCall(AbutPairCheck(scene->pair[i]));
   PetscCall(AbutInterfaceCheck(scene->iface));
   PetscCall(AbutSceneCheckLoop_Private(scene));
+  PetscCall(AbutSceneRestart_Private(scene));
   PetscCall(AbutInterfaceSetUp(scene->iface));
   PetscCall(AbutSceneSetLinearTolerance_Private(scene));
   PetscCall(AbutSceneClock_Private(scene, ABUT_TIME_SETUP));
@@ -235,6 +236,8 @@ PetscErrorCode AbutSceneDestroy(AbutScene *scene)
   }
   PetscCall(VecDestroy(&s->x));
   PetscCall(PetscFree(s->edge));
+  PetscCall(PetscFree(s->checkpoint));
+  PetscCall(AbutArchiveDestroy(&s->restart));
   PetscCall(SNESDestroy(&s->snes));
   PetscCall(AbutInterfaceDestroy(&s->iface));
   PetscCall(AbutEstimatorDestroy(&s->estimator));

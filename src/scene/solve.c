@@ -269,7 +269,7 @@ PetscErrorCode AbutSceneSolve(AbutScene scene)
   PetscCall(AbutSceneSetUp(scene));
   PetscCall(AbutScenePrintGamma_Private(scene));
   PetscCall(AbutScenePrintHeader_Private(scene));
-  for (scene->cycle = 0; !ends; ++scene->cycle) {
+  for (; !ends; ++scene->cycle) {
     PetscCall(AbutSceneCycle_Private(scene, marks, &converged, &adapt, &nmarked));
     PetscCall(AbutSceneRecord_Private(scene, &consistent));
     ends = AbutSceneEnds_Private(scene, converged, consistent, adapt);
@@ -281,6 +281,7 @@ PetscErrorCode AbutSceneSolve(AbutScene scene)
     if (!ends && adapt == ABUT_ADAPT_REFINED) PetscCall(AbutSceneAdapt_Private(scene, marks));
     PetscCall(AbutSceneFreeMarks_Private(scene, marks));
     PetscCall(AbutSceneClock_Private(scene, ABUT_TIME_ADAPT));
+    if (!ends) PetscCall(AbutSceneCheckpoint_Private(scene));
   }
   if (scene->snes) PetscCall(AbutRecorderWriteProfile(scene->recorder, scene->iface, scene->npairs, scene->pair));
   PetscCall(AbutSceneClock_Private(scene, ABUT_TIME_OUTPUT));

@@ -14,6 +14,8 @@ struct _AbutMeshOps {
 
 #define ABUT_BOX_SIDES 4
 
+typedef struct _AbutMeshStep *AbutMeshStep; /* see journal.c */
+
 /* Lagrange's functions of one order on the reference cell */
 typedef struct {
   PetscInt  order, corners, nodes;
@@ -41,6 +43,9 @@ struct _p_AbutMesh {
   PetscInt         nknots[ABUT_BOX_SIDES]; /* of the displacement along each side, see ties.c; 0: none */
   PetscReal       *knot[ABUT_BOX_SIDES];   /* [2*nknots] reference position and displacement */
   PetscBool        tiesmoved;              /* since the topology was made */
+  PetscBool        journal;                /* is kept */
+  PetscInt         nsteps, maxsteps;
+  AbutMeshStep     step; /* [nsteps] */
   void            *data;
 };
 
@@ -60,6 +65,9 @@ PETSC_INTERN PetscErrorCode AbutMeshTopologyReset_Private(AbutMesh);
 PETSC_INTERN PetscErrorCode AbutMeshEdgesBuild_Private(AbutMesh);
 PETSC_INTERN PetscErrorCode AbutMeshNodesBuild_Private(AbutMesh);
 PETSC_INTERN PetscErrorCode AbutMeshMoveToTies_Private(AbutMesh, PetscInt, PetscReal[]);
+PETSC_INTERN PetscErrorCode AbutJournalTies_Private(AbutMesh, PetscInt, const AbutTie[]);
+PETSC_INTERN PetscErrorCode AbutJournalAdapt_Private(AbutMesh, PetscBool, const PetscBool[]);
+PETSC_INTERN PetscErrorCode AbutJournalDestroy_Private(AbutMesh);
 PETSC_INTERN PetscErrorCode AbutMeshSidesBuild_Private(AbutMesh);
 PETSC_INTERN void           AbutMeshGetEdgeNodes_Private(const AbutMeshTopology *, PetscInt, PetscInt, PetscInt[]);
 PETSC_EXTERN PetscLogEvent  ABUTMESH_Adapt;

@@ -2,7 +2,6 @@
 
 #include <abutrecorder.h>
 #include <petsc/private/petscimpl.h>
-#include <stdio.h>
 
 /* The fields of one body, numbered over all ranks: row g of a vertex field is the vertex with global number g, hanging vertices follow.
    A hanging vertex on a cut between ranks has a row for each of them. */
@@ -62,10 +61,3 @@ PETSC_INTERN PetscLogEvent ABUTRECORDER_WriteFields;
 
 PETSC_INTERN PetscErrorCode AbutRecorderCreate_XDMF(AbutRecorder);
 PETSC_INTERN PetscErrorCode AbutRecorderCreate_VTU(AbutRecorder);
-
-/* Files are written by rank 0 as PATH.part and renamed to PATH; what goes wrong there is an error on all ranks */
-typedef void (*AbutFileWriter)(FILE *, const void *ctx);
-PETSC_INTERN PetscErrorCode AbutFileCheckPath_Private(MPI_Comm, const char key[], const char path[]);
-PETSC_INTERN PetscErrorCode AbutFileWrite_Private(MPI_Comm, const char path[], AbutFileWriter, const void *ctx);
-PETSC_INTERN PetscErrorCode AbutFileCopyAside_Private(MPI_Comm, const char path[]);
-PETSC_INTERN PetscErrorCode AbutFileRename_Private(MPI_Comm, const char path[]);

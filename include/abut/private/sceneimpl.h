@@ -69,6 +69,10 @@ struct _p_AbutScene {
   const char    *verdict;
   PetscInt       status;
 
+  char       *checkpoint; /* file, NULL: none */
+  PetscInt    every;      /* cycles */
+  AbutArchive restart;    /* from which the run goes on, NULL: it begins */
+
   PetscInt         nedges; /* of the last meshes that changed */
   AbutContactEdge *edge;
   PetscBool        settled;              /* the meshes have the cells of the last ones, and moved */
@@ -94,6 +98,10 @@ PETSC_INTERN PetscErrorCode AbutSceneSettles_Private(AbutScene, PetscBool *);
 PETSC_INTERN PetscErrorCode AbutSceneAdaptBody_Private(AbutScene, AbutBody, const PetscBool[]);
 PETSC_INTERN PetscErrorCode AbutSceneFollows_Private(AbutScene, PetscBool *);
 PETSC_INTERN PetscErrorCode AbutSceneRecordTies_Private(AbutScene);
+/* checkpoint.c */
+PETSC_INTERN PetscErrorCode AbutSceneCheckpointFromOptions_Private(AbutScene);
+PETSC_INTERN PetscErrorCode AbutSceneCheckpoint_Private(AbutScene);
+PETSC_INTERN PetscErrorCode AbutSceneRestart_Private(AbutScene);
 /* peaks.c */
 PETSC_INTERN PetscErrorCode AbutSceneMarkPeaks_Private(AbutScene, AbutBody, PetscBool[]);
 /* budget.c */

@@ -1,10 +1,11 @@
-/* Files that are never half written: rank 0 writes PATH.part and renames it to PATH */
-#include <abut/private/recorderimpl.h>
+#include <abutsys.h> /*I "abutsys.h" I*/
 #include <errno.h>
 #include <fcntl.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+/* Files that are never half written: rank 0 writes PATH.part and renames it to PATH */
 
 #define ABUT_FILE_ISFOLDER 1
 #define ABUT_FILE_NOTFILE  2
@@ -29,8 +30,21 @@ static int PathProblem(const char path[], const char folder[])
   return 0;
 }
 
-/* Whether `path`, the value of the option `key`, can be written, asked before any work is done */
-PetscErrorCode AbutFileCheckPath_Private(MPI_Comm comm, const char key[], const char path[])
+/*@C
+   AbutFileCheckPath - Whether a file can be written, asked before any work is done; if not, a bad input
+
+   Collective
+
+   Input Parameters:
++  comm - the communicator
+.  key  - the option that names the file, without its dash
+-  path - the file
+
+   Level: developer
+
+.seealso: `AbutFileWrite()`
+@*/
+PetscErrorCode AbutFileCheckPath(MPI_Comm comm, const char key[], const char path[])
 {
   char        folder[PETSC_MAX_PATH_LEN] = ".";
   const char *slash                      = strrchr(path, '/');
@@ -95,8 +109,25 @@ static PetscErrorCode AbutFileCheckStatus_Private(MPI_Comm comm, int status, con
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Writes `path` with `write`, which is called on rank 0 only */
-PetscErrorCode AbutFileWrite_Private(MPI_Comm comm, const char path[], AbutFileWriter write, const void *ctx)
+/*@C
+   AbutFileWrite - Writes a file aside, as PATH.part, and renames it: there is the old one or the new one, never half of one
+
+   Collective
+
+   Input Parameters:
++  comm  - the communicator
+.  path  - the file
+.  write - writes to a stream; called on rank 0 only
+-  ctx   - handed to write
+
+   Level: developer
+
+   Note:
+   What goes wrong on rank 0 is `PETSC_ERR_FILE_WRITE` on all ranks, and the old file stays.
+
+.seealso: `AbutFileCheckPath()`, `AbutFileCopyAside()`
+@*/
+PetscErrorCode AbutFileWrite(MPI_Comm comm, const char path[], AbutFileWriter write, const void *ctx)
 {
   char        aside[PETSC_MAX_PATH_LEN];
   int         status = 0;
@@ -113,8 +144,20 @@ PetscErrorCode AbutFileWrite_Private(MPI_Comm comm, const char path[], AbutFileW
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Copies `path` to `path`.part, to which more is then appended */
-PetscErrorCode AbutFileCopyAside_Private(MPI_Comm comm, const char path[])
+/*@C
+   AbutFileCopyAside - Copies PATH to PATH.part, to which more is then appended
+
+   Collective
+
+   Input Parameters:
++  comm - the communicator
+-  path - the file
+
+   Level: developer
+
+.seealso: `AbutFileRename()`
+@*/
+PetscErrorCode AbutFileCopyAside(MPI_Comm comm, const char path[])
 {
   char        aside[PETSC_MAX_PATH_LEN];
   int         status = 0;
@@ -128,8 +171,20 @@ PetscErrorCode AbutFileCopyAside_Private(MPI_Comm comm, const char path[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Renames `path`.part, which all ranks have closed, to `path` */
-PetscErrorCode AbutFileRename_Private(MPI_Comm comm, const char path[])
+/*@C
+   AbutFileRename - Renames PATH.part, which all ranks have closed, to PATH
+
+   Collective
+
+   Input Parameters:
++  comm - the communicator
+-  path - the file
+
+   Level: developer
+
+.seealso: `AbutFileCopyAside()`
+@*/
+PetscErrorCode AbutFileRename(MPI_Comm comm, const char path[])
 {
   char        aside[PETSC_MAX_PATH_LEN];
   int         status = 0;

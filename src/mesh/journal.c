@@ -1,0 +1,240 @@
+#include <abut/private/meshimpl.h> /*I "abutmesh.h" I*/
+
+/* How a mesh became what it is: every set of ties and every split since the first mesh, by which a restarted run makes the same mesh
+   again, on any number of ranks. Split cells are known by their centres. */
+
+typedef enum {
+  ABUT_STEP_TIES, /* new ties, see AbutMeshSetTies() */
+  ABUT_STEP_MOVE, /* the mesh moved to them */
+  ABUT_STEP_SPLIT /* cells were split, and the mesh moved */
+} AbutStepKind;
+
+struct _AbutMeshStep {
+  PetscInt   kind, n; /* how many ties, or local cells */
+  PetscReal *value;   /* [3 or 2 each] side, reference, wanted; or x, y */
+};
+
+/*@
+   AbutMeshKeepJournal - From now on a mesh keeps in mind how it is refined
+
+   Logically Collective
+
+   Input Parameter:
+.  mesh - the mesh, before it is adapted
+
+   Level: developer
+
+   Note:
+   Costs 16 bytes for each cell that is split.
+
+.seealso: `AbutMeshArchive()`
+@*/
+PetscErrorCode AbutMeshKeepJournal(AbutMesh mesh)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(mesh, ABUTMESH_CLASSID, 1);
+  PetscCheck(!mesh->generation, PetscObjectComm((PetscObject)mesh), PETSC_ERR_ORDER, "Call AbutMeshKeepJournal() before the mesh adapts");
+  mesh->journal = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutJournalAdd_Private(AbutMesh mesh, PetscInt kind, PetscInt n, PetscInt each, AbutMeshStep *step)
+{
+  PetscFunctionBegin;
+  if (mesh->nsteps == mesh->maxsteps) {
+    mesh->maxsteps = 2 * mesh->maxsteps + 16;
+    PetscCall(PetscRealloc(sizeof(**step) * mesh->maxsteps, &mesh->step));
+  }
+  *step          = &mesh->step[mesh->nsteps++];
+  (*step)->kind  = kind;
+  (*step)->n     = n;
+  (*step)->value = NULL;
+  PetscCall(PetscMalloc1(each * n, &(*step)->value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AbutJournalTies_Private(AbutMesh mesh, PetscInt n, const AbutTie tie[])
+{
+  AbutMeshStep step;
+
+  PetscFunctionBegin;
+  if (!mesh->journal) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AbutJournalAdd_Private(mesh, ABUT_STEP_TIES, n, 3, &step));
+  for (PetscInt i = 0; i < n; ++i) {
+    step->value[3 * i]     = tie[i].side;
+    step->value[3 * i + 1] = tie[i].reference;
+    step->value[3 * i + 2] = tie[i].wanted;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Returns the size of a cell, too */
+static PetscReal AbutJournalCentre_Private(const AbutMeshTopology *t, PetscInt c, PetscReal x[2])
+{
+  const PetscInt *corner = t->cell + t->corners * c;
+
+  for (PetscInt d = 0; d < 2; ++d) {
+    x[d] = 0.;
+    for (PetscInt k = 0; k < t->corners; ++k) x[d] += t->x[2 * corner[k] + d] / t->corners;
+  }
+  return PetscMax(PetscAbsReal(x[0] - t->x[2 * corner[0]]), PetscAbsReal(x[1] - t->x[2 * corner[0] + 1]));
+}
+
+/* Before the mesh changes; without marks it only moves */
+PetscErrorCode AbutJournalAdapt_Private(AbutMesh mesh, PetscBool splits, const PetscBool mark[])
+{
+  const AbutMeshTopology *t = &mesh->topology;
+  AbutMeshStep            step;
+  PetscInt                n = 0;
+
+  PetscFunctionBegin;
+  if (!mesh->journal) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt c = 0; c < t->ncells && splits; ++c) n += mark[c];
+  PetscCall(AbutJournalAdd_Private(mesh, splits ? ABUT_STEP_SPLIT : ABUT_STEP_MOVE, n, 2, &step));
+  n = 0;
+  for (PetscInt c = 0; c < t->ncells && splits; ++c)
+    if (mark[c]) (void)AbutJournalCentre_Private(t, c, step->value + 2 * n++);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AbutJournalDestroy_Private(AbutMesh mesh)
+{
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < mesh->nsteps; ++i) PetscCall(PetscFree(mesh->step[i].value));
+  PetscCall(PetscFree(mesh->step));
+  mesh->nsteps = mesh->maxsteps = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static int AbutCentreCompare_Private(const void *a, const void *b)
+{
+  const PetscReal *x = (const PetscReal *)a, *y = (const PetscReal *)b;
+
+  if (x[0] != y[0]) return x[0] > y[0] ? 1 : -1;
+  return (x[1] > y[1]) - (x[1] < y[1]);
+}
+
+/* The centres of all ranks on rank 0, in order */
+static PetscErrorCode AbutJournalGather_Private(MPI_Comm comm, PetscInt n, const PetscReal mine[], PetscInt *all, PetscReal **centre)
+{
+  PetscMPIInt size, rank, count, *counts, *first;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCall(PetscMPIIntCast(2 * n, &count));
+  PetscCall(PetscMalloc2(size, &counts, size + 1, &first));
+  PetscCallMPI(MPI_Allgather(&count, 1, MPI_INT, counts, 1, MPI_INT, comm));
+  first[0] = 0;
+  for (PetscMPIInt r = 0; r < size; ++r) first[r + 1] = first[r] + counts[r];
+  *all = first[size] / 2;
+  PetscCall(PetscMalloc1(rank ? 0 : first[size], centre));
+  PetscCallMPI(MPI_Gatherv(mine, count, MPIU_REAL, *centre, counts, first, MPIU_REAL, 0, comm));
+  if (!rank) qsort(*centre, (size_t)*all, 2 * sizeof(PetscReal), AbutCentreCompare_Private);
+  PetscCall(PetscFree2(counts, first));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Marks the local cells whose centres are in the list, but for round-off: another rank may sum corners in another order */
+static PetscInt AbutJournalFind_Private(const AbutMeshTopology *t, PetscInt n, const PetscReal centre[], PetscBool mark[])
+{
+  PetscInt found = 0;
+
+  for (PetscInt c = 0; c < t->ncells; ++c) {
+    PetscReal x[2];
+    PetscReal near = 1e-6 * AbutJournalCentre_Private(t, c, x);
+    PetscInt  low = 0, high = n;
+
+    while (low < high) {
+      const PetscInt middle = (low + high) / 2;
+
+      if (centre[2 * middle] < x[0] - near) low = middle + 1;
+      else high = middle;
+    }
+    mark[c] = PETSC_FALSE;
+    for (; low < n && centre[2 * low] <= x[0] + near && !mark[c]; ++low)
+      mark[c] = (PetscBool)(PetscAbsReal(centre[2 * low + 1] - x[1]) <= near);
+    found += mark[c];
+  }
+  return found;
+}
+
+/* Does again what the journal says */
+static PetscErrorCode AbutJournalReplay_Private(AbutMesh mesh, PetscInt kind, PetscInt n, const PetscReal value[], PetscBool *same)
+{
+  MPI_Comm   comm = PetscObjectComm((PetscObject)mesh);
+  AbutTie   *tie;
+  PetscBool *mark;
+  PetscInt   found;
+
+  PetscFunctionBegin;
+  *same = PETSC_TRUE;
+  if (kind == ABUT_STEP_TIES) {
+    PetscCall(PetscMalloc1(n, &tie));
+    for (PetscInt i = 0; i < n; ++i) tie[i] = (AbutTie){(PetscInt)value[3 * i], value[3 * i + 1], value[3 * i + 2]};
+    PetscCall(AbutMeshSetTies(mesh, n, tie));
+    PetscCall(PetscFree(tie));
+  } else if (kind == ABUT_STEP_MOVE) PetscCall(AbutMeshAdapt(mesh, NULL));
+  else {
+    PetscCall(PetscMalloc1(mesh->topology.ncells + 1, &mark)); /* not NULL on a rank without cells */
+    found = AbutJournalFind_Private(&mesh->topology, n, value, mark);
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &found, 1, MPIU_INT, MPI_SUM, comm));
+    *same = (PetscBool)(found == n);
+    if (*same) PetscCall(AbutMeshAdapt(mesh, mark));
+    PetscCall(PetscFree(mark));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutMeshArchive - Writes how a mesh became what it is, or makes it that again
+
+   Collective
+
+   Input Parameters:
++  mesh - the mesh, with a journal; where the archive is read, the first mesh of the same box, set up
+-  ar   - the archive
+
+   Level: developer
+
+   Note:
+   The same mesh to the last bit on the same number of ranks. An archive whose splits do not fit, or that ends with another number of
+   cells, is a bad input.
+
+.seealso: `AbutMeshKeepJournal()`, `AbutArchiveOpen()`
+@*/
+PetscErrorCode AbutMeshArchive(AbutMesh mesh, AbutArchive ar)
+{
+  MPI_Comm  comm  = PetscObjectComm((PetscObject)mesh);
+  PetscInt  steps = mesh->nsteps, cells;
+  PetscBool reads, same = PETSC_TRUE;
+  char      text[256];
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(mesh, ABUTMESH_CLASSID, 1);
+  PetscCall(AbutArchiveReads(ar, &reads));
+  PetscCall(PetscSNPrintf(text, sizeof(text), "%ss of order %d, %d by %d from %.17g,%.17g to %.17g,%.17g", AbutShapes[mesh->shape],
+                          (int)mesh->order, (int)mesh->cells[0], (int)mesh->cells[1], (double)mesh->lower[0], (double)mesh->lower[1],
+                          (double)mesh->upper[0], (double)mesh->upper[1]));
+  PetscCall(AbutArchiveFit(ar, "its mesh", text));
+  PetscCall(AbutArchiveInts(ar, "splits", 1, &steps));
+  for (PetscInt i = 0; i < steps && same; ++i) {
+    PetscInt   title[2];
+    PetscReal *value = NULL;
+
+    if (!reads) {
+      title[0] = mesh->step[i].kind;
+      title[1] = mesh->step[i].n;
+      if (title[0] == ABUT_STEP_SPLIT) PetscCall(AbutJournalGather_Private(comm, title[1], mesh->step[i].value, &title[1], &value));
+    }
+    PetscCall(AbutArchiveInts(ar, "split", 2, title));
+    if (reads) PetscCall(PetscMalloc1(3 * title[1], &value));
+    PetscCall(AbutArchiveReals(ar, "split cells", (title[0] == ABUT_STEP_TIES ? 3 : 2) * title[1], value ? value : mesh->step[i].value));
+    if (reads) PetscCall(AbutJournalReplay_Private(mesh, title[0], title[1], value, &same));
+    PetscCall(PetscFree(value));
+  }
+  PetscCall(AbutMeshGetCellCount(mesh, &cells));
+  PetscCall(PetscSNPrintf(text, sizeof(text), "%" PetscInt_FMT " cells", same ? cells : -1));
+  PetscCall(AbutArchiveFit(ar, "the last mesh", text));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,131 @@
+#include <abut/private/sceneimpl.h>
+
+/* What a run needs to go on after a cycle: how the meshes were refined, the traces and pressures that go over to the new ones, and what the
+   record knows. Solving, estimating and marking again on these meshes gives what the run would have given. */
+
+/*  -checkpoint FILE -checkpoint_every N, -restart FILE */
+PetscErrorCode AbutSceneCheckpointFromOptions_Private(AbutScene scene)
+{
+  MPI_Comm  comm                        = PetscObjectComm((PetscObject)scene);
+  char      path[2][PETSC_MAX_PATH_LEN] = {"", ""};
+  PetscBool set[2];
+
+  PetscFunctionBegin;
+  scene->every = 1;
+  PetscOptionsBegin(comm, NULL, "Checkpoints", NULL);
+  PetscCall(AbutOptionsString(PetscOptionsObject, "-checkpoint", "File from which a run that was stopped can go on", path[0],
+                              sizeof(path[0]), &set[0]));
+  if (set[0]) PetscCall(AbutOptionsInt(PetscOptionsObject, "-checkpoint_every", "Cycles between two checkpoints", &scene->every, NULL));
+  PetscCall(AbutOptionsString(PetscOptionsObject, "-restart", "File of a checkpoint to go on from", path[1], sizeof(path[1]), &set[1]));
+  PetscOptionsEnd();
+  for (PetscInt i = 0; i < 2; ++i)
+    AbutCheckInput(!set[i] || path[i][0], comm, "%s: no file is named; give the name of a file", i ? "restart" : "checkpoint");
+  AbutCheckInput(scene->adaptor || !(set[0] || set[1]), comm,
+                 "%s: the scene has no adaptor, so it has one cycle and nothing to go on with; give adaptor_type, or leave it out",
+                 set[0] ? "checkpoint" : "restart");
+  AbutCheckInput(scene->every > 0, comm, "checkpoint_every: %" PetscInt_FMT " is no number of cycles; give 1 or more", scene->every);
+  if (set[0]) {
+    PetscCall(AbutFileCheckPath(comm, "checkpoint", path[0]));
+    PetscCall(PetscStrallocpy(path[0], &scene->checkpoint));
+  }
+  if (set[1]) PetscCall(AbutArchiveOpen(comm, "restart", path[1], &scene->restart));
+  for (PetscInt b = 0; b < scene->nbodies && (set[0] || set[1]); ++b) {
+    AbutMesh mesh;
+
+    PetscCall(AbutBodyGetMesh(scene->body[b], &mesh));
+    PetscCall(AbutMeshKeepJournal(mesh));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutSceneArchiveEdges_Private(AbutScene scene, AbutArchive ar)
+{
+  PetscBool reads;
+
+  PetscFunctionBegin;
+  PetscCall(AbutArchiveReads(ar, &reads));
+  PetscCall(AbutArchiveInts(ar, "edges of contacts", 1, &scene->nedges));
+  if (reads) PetscCall(PetscMalloc1(scene->nedges, &scene->edge));
+  for (PetscInt e = 0; e < scene->nedges; ++e) {
+    AbutContactEdge *edge = &scene->edge[e];
+
+    PetscCall(AbutArchiveInts(ar, "pair of an edge", 1, &edge->pair));
+    PetscCall(AbutArchiveReals(ar, "place of an edge", 2, edge->x));
+    if (reads) PetscCall(AbutPairGetBodies(scene->pair[edge->pair], edge->body, edge->side));
+  }
+  PetscCall(AbutArchiveInts(ar, "tied vertices", scene->npairs, scene->tied));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The state at the beginning of a cycle, in or out; the interface has to be set up for a trace of its meshes */
+static PetscErrorCode AbutSceneArchive_Private(AbutScene scene, AbutArchive ar)
+{
+  PetscReal number[2 + ABUT_TIMES] = {scene->work, scene->discretisation};
+  PetscInt  count[6] = {scene->nbodies, scene->npairs, scene->cycle + 1, scene->sweepsbefore, scene->settled, scene->x != NULL};
+  PetscBool reads;
+
+  PetscFunctionBegin;
+  PetscCall(AbutArchiveReads(ar, &reads));
+  PetscCall(AbutArchiveInts(ar, "numbers of bodies and pairs", 2, count));
+  AbutCheckInput(count[0] == scene->nbodies && count[1] == scene->npairs, PetscObjectComm((PetscObject)scene),
+                 "restart: the checkpoint is of another scene: it has %" PetscInt_FMT " bodies and %" PetscInt_FMT
+                 " pairs, this one %" PetscInt_FMT " and %" PetscInt_FMT,
+                 count[0], count[1], scene->nbodies, scene->npairs);
+  PetscCall(AbutArchiveInts(ar, "cycle", 4, count + 2));
+  for (PetscInt i = 0; i < ABUT_TIMES; ++i) number[2 + i] = scene->seconds[i];
+  PetscCall(AbutArchiveReals(ar, "work", 2 + ABUT_TIMES, number));
+  for (PetscInt b = 0; b < scene->nbodies; ++b) PetscCall(AbutBodyArchive(scene->body[b], ar));
+  PetscCall(AbutSceneArchiveEdges_Private(scene, ar));
+  if (reads) {
+    scene->cycle          = count[2];
+    scene->sweepsbefore   = count[3];
+    scene->settled        = (PetscBool)count[4];
+    scene->work           = number[0];
+    scene->discretisation = number[1];
+    for (PetscInt i = 0; i < ABUT_TIMES; ++i) {
+      scene->seconds[i] += number[2 + i];
+      scene->begun -= number[2 + i];
+    }
+  }
+  PetscCall(AbutInterfaceArchive(scene->iface, ar));
+  if (count[5]) { /* the meshes stay */
+    PetscCall(AbutInterfaceSetUp(scene->iface));
+    if (reads) {
+      PetscCall(AbutInterfaceCreateVec(scene->iface, &scene->x));
+      PetscCall(AbutInterfaceSetSNES(scene->iface, scene->snes));
+    }
+    PetscCall(AbutInterfaceArchiveTrace(scene->iface, ar, scene->x));
+  }
+  PetscCall(AbutRecorderArchive(scene->recorder, ar));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* After a cycle that is not the last one */
+PetscErrorCode AbutSceneCheckpoint_Private(AbutScene scene)
+{
+  AbutArchive ar;
+
+  PetscFunctionBegin;
+  if (!scene->checkpoint || (scene->cycle + 1) % scene->every) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AbutArchiveCreate(PetscObjectComm((PetscObject)scene), &ar));
+  PetscCall(AbutSceneArchive_Private(scene, ar));
+  PetscCall(AbutArchiveWrite(ar, scene->checkpoint));
+  PetscCall(AbutArchiveDestroy(&ar));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Before the first cycle */
+PetscErrorCode AbutSceneRestart_Private(AbutScene scene)
+{
+  PetscFunctionBegin;
+  if (!scene->restart) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt b = 0; b < scene->nbodies; ++b) {
+    AbutMesh mesh;
+
+    PetscCall(AbutBodyGetMesh(scene->body[b], &mesh));
+    PetscCall(AbutMeshSetUp(mesh));
+  }
+  PetscCall(AbutSceneArchive_Private(scene, scene->restart));
+  PetscCall(AbutArchiveDestroy(&scene->restart));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,380 @@
+#include <abutsys.h> /*I "abutsys.h" I*/
+#include <errno.h>
+#include <string.h>
+
+/* A header of five numbers, and the values one after another: length of the name and the name, kind, count, and the values; whole numbers
+   are 64 bits long, reals are doubles */
+
+#define ABUT_ARCHIVE_MAGIC   0x6576696863724142 /* "BArchive" */
+#define ABUT_ARCHIVE_VERSION 1
+#define ABUT_ARCHIVE_NAME    64
+
+typedef long long AbutWord; /* of the file: 64 bits everywhere */
+
+typedef struct {
+  AbutWord magic, version, order, size; /* order: of bytes */
+  AbutWord sum;                         /* of the bytes that follow */
+} AbutArchiveHeader;
+
+#define ABUT_ARCHIVE_ORDER 0x0102030405060708
+
+struct _n_AbutArchive {
+  MPI_Comm comm;
+  char    *file; /* what is read; NULL while it is filled */
+  char    *key;  /* the option that names it */
+  char    *byte;
+  size_t   size, room, at;
+};
+
+/* FNV-1a of 64 bits, http://www.isthe.com/chongo/tech/comp/fnv */
+static AbutWord AbutArchiveSum_Private(size_t n, const char byte[])
+{
+  unsigned long long sum = 0xcbf29ce484222325ULL;
+
+  for (size_t i = 0; i < n; ++i) sum = (sum ^ (unsigned char)byte[i]) * 0x100000001b3ULL;
+  return (AbutWord)sum;
+}
+
+/*@
+   AbutArchiveCreate - Creates an empty archive, to be filled
+
+   Collective
+
+   Input Parameter:
+.  comm - the communicator
+
+   Output Parameter:
+.  ar - the archive
+
+   Level: developer
+
+.seealso: `AbutArchiveReals()`, `AbutArchiveWrite()`, `AbutArchiveDestroy()`
+@*/
+PetscErrorCode AbutArchiveCreate(MPI_Comm comm, AbutArchive *ar)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscNew(ar));
+  (*ar)->comm = comm;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Reads on rank 0; what is wrong, in a text, or an empty one */
+static PetscErrorCode AbutArchiveLoad_Private(const char path[], AbutArchive ar, char wrong[], size_t len)
+{
+  AbutArchiveHeader header;
+  FILE             *f = fopen(path, "rb");
+  size_t            n = f ? fread(&header, 1, sizeof(header), f) : 0;
+
+  PetscFunctionBegin;
+  if (!f) PetscCall(PetscSNPrintf(wrong, len, "cannot be read: %s", strerror(errno)));
+  else if (n < sizeof(header.magic) || header.magic != ABUT_ARCHIVE_MAGIC) PetscCall(PetscStrncpy(wrong, "is not a checkpoint", len));
+  else if (n < sizeof(header)) PetscCall(PetscStrncpy(wrong, "is cut off", len));
+  else if (header.order != ABUT_ARCHIVE_ORDER) PetscCall(PetscStrncpy(wrong, "was written on a machine with another order of bytes", len));
+  else if (header.version != ABUT_ARCHIVE_VERSION)
+    PetscCall(PetscSNPrintf(wrong, len, "has version %lld, and this program reads version %d", header.version, ABUT_ARCHIVE_VERSION));
+  else {
+    size_t rest;
+
+    (void)fseek(f, 0, SEEK_END);
+    rest = (size_t)ftell(f) - sizeof(header);
+    (void)fseek(f, sizeof(header), SEEK_SET);
+    if (header.size < 0 || rest < (size_t)header.size) PetscCall(PetscStrncpy(wrong, "is cut off", len));
+    else {
+      ar->size = (size_t)header.size;
+      PetscCall(PetscMalloc1(ar->size + 1, &ar->byte));
+      n = fread(ar->byte, 1, ar->size, f);
+      if (rest != ar->size || n != ar->size || AbutArchiveSum_Private(n, ar->byte) != header.sum)
+        PetscCall(PetscStrncpy(wrong, "is damaged: its checksum does not fit", len));
+    }
+  }
+  if (f) (void)fclose(f);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutArchiveOpen - Reads an archive that was written; one that cannot be read is a bad input
+
+   Collective
+
+   Input Parameters:
++  comm - the communicator
+.  key  - the option that names the file, without its dash
+-  path - the file
+
+   Output Parameter:
+.  ar - the archive, which gives its values in the order in which they were put in
+
+   Level: developer
+
+.seealso: `AbutArchiveCreate()`, `AbutArchiveReals()`, `AbutArchiveDestroy()`
+@*/
+PetscErrorCode AbutArchiveOpen(MPI_Comm comm, const char key[], const char path[], AbutArchive *ar)
+{
+  char        wrong[256] = "";
+  AbutArchive a;
+  PetscInt    size;
+  PetscMPIInt rank;
+
+  PetscFunctionBegin;
+  PetscCall(AbutArchiveCreate(comm, &a));
+  PetscCall(PetscStrallocpy(path, &a->file));
+  PetscCall(PetscStrallocpy(key, &a->key));
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (!rank) PetscCall(AbutArchiveLoad_Private(path, a, wrong, sizeof(wrong)));
+  PetscCallMPI(MPI_Bcast(wrong, sizeof(wrong), MPI_CHAR, 0, comm));
+  if (wrong[0]) PetscCall(AbutArchiveDestroy(&a));
+  AbutCheckInput(!wrong[0], comm, "%s: %s %s; give one that -checkpoint has written", key, path, wrong);
+  size = (PetscInt)a->size;
+  PetscCallMPI(MPI_Bcast(&size, 1, MPIU_INT, 0, comm));
+  a->size = (size_t)size;
+  if (rank) PetscCall(PetscMalloc1(a->size + 1, &a->byte));
+  PetscCallMPI(MPI_Bcast(a->byte, (PetscMPIInt)a->size, MPI_CHAR, 0, comm));
+  *ar = a;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void AbutArchiveDump_Private(FILE *f, const void *ctx)
+{
+  const AbutArchive       ar     = (AbutArchive)ctx;
+  const AbutArchiveHeader header = {ABUT_ARCHIVE_MAGIC, ABUT_ARCHIVE_VERSION, ABUT_ARCHIVE_ORDER, (AbutWord)ar->size,
+                                    AbutArchiveSum_Private(ar->size, ar->byte)};
+
+  (void)fwrite(&header, sizeof(header), 1, f);
+  (void)fwrite(ar->byte, 1, ar->size, f);
+}
+
+/*@C
+   AbutArchiveWrite - Writes an archive that was filled
+
+   Collective
+
+   Input Parameters:
++  ar   - the archive
+-  path - the file; it is replaced as a whole or not at all
+
+   Level: developer
+
+.seealso: `AbutArchiveCreate()`, `AbutFileWrite()`
+@*/
+PetscErrorCode AbutArchiveWrite(AbutArchive ar, const char path[])
+{
+  PetscFunctionBegin;
+  PetscCall(AbutFileWrite(ar->comm, path, AbutArchiveDump_Private, ar));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutArchiveReads - Whether values come out of the archive, or go into it
+
+   Not Collective
+
+   Input Parameter:
+.  ar - the archive
+
+   Output Parameter:
+.  reads - they come out
+
+   Level: developer
+
+.seealso: `AbutArchiveOpen()`, `AbutArchiveCreate()`
+@*/
+PetscErrorCode AbutArchiveReads(AbutArchive ar, PetscBool *reads)
+{
+  PetscFunctionBegin;
+  *reads = (PetscBool)(ar->file != NULL);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Bytes into the archive, on rank 0 */
+static PetscErrorCode AbutArchivePut_Private(AbutArchive ar, size_t n, const void *from)
+{
+  PetscMPIInt rank;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(ar->comm, &rank));
+  if (rank || !n) PetscFunctionReturn(PETSC_SUCCESS);
+  if (ar->size + n > ar->room) {
+    ar->room = 2 * (ar->size + n);
+    PetscCall(PetscRealloc(ar->room, &ar->byte));
+  }
+  memcpy(ar->byte + ar->size, from, n);
+  ar->size += n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Bytes out of it: those that should be there */
+static PetscErrorCode AbutArchiveGet_Private(AbutArchive ar, const char name[], size_t n, void *to)
+{
+  PetscFunctionBegin;
+  AbutCheckInput(ar->at + n <= ar->size, ar->comm, "%s: %s has no %s; it belongs to another scene", ar->key, ar->file, name);
+  memcpy(to, ar->byte + ar->at, n);
+  ar->at += n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The name, kind and count of what follows; n < 0: any count */
+static PetscErrorCode AbutArchiveTitle_Private(AbutArchive ar, const char name[], AbutWord kind, PetscInt *n)
+{
+  char     there[ABUT_ARCHIVE_NAME] = "", mine[ABUT_ARCHIVE_NAME] = "";
+  AbutWord title[2] = {kind, *n};
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrncpy(mine, name, sizeof(mine)));
+  if (!ar->file) {
+    PetscCall(AbutArchivePut_Private(ar, sizeof(mine), mine));
+    PetscCall(AbutArchivePut_Private(ar, sizeof(title), title));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(AbutArchiveGet_Private(ar, name, sizeof(there), there));
+  PetscCall(AbutArchiveGet_Private(ar, name, sizeof(title), title));
+  AbutCheckInput(!strncmp(there, mine, sizeof(there)) && title[0] == kind && (*n < 0 || title[1] == *n), ar->comm,
+                 "%s: %s has no %s; it belongs to another scene", ar->key, ar->file, name);
+  *n = (PetscInt)title[1];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutArchiveInts - Whole numbers into or out of an archive
+
+   Collective
+
+   Input Parameters:
++  ar   - the archive
+.  name - what they are, in a message to the user; at most 63 letters
+-  n    - how many
+
+   Input/Output Parameter:
+.  value - [n] the numbers; where the archive is filled those of rank 0 count, where it is read all ranks get them
+
+   Level: developer
+
+.seealso: `AbutArchiveReals()`, `AbutArchiveString()`
+@*/
+PetscErrorCode AbutArchiveInts(AbutArchive ar, const char name[], PetscInt n, PetscInt value[])
+{
+  PetscFunctionBegin;
+  PetscCall(AbutArchiveTitle_Private(ar, name, 'i', &n));
+  for (PetscInt i = 0; i < n; ++i) {
+    AbutWord word;
+
+    if (ar->file) {
+      PetscCall(AbutArchiveGet_Private(ar, name, sizeof(word), &word));
+      value[i] = (PetscInt)word;
+    } else {
+      word = value[i];
+      PetscCall(AbutArchivePut_Private(ar, sizeof(word), &word));
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutArchiveReals - Numbers into or out of an archive, to the last bit
+
+   Collective
+
+   Input Parameters:
++  ar   - the archive
+.  name - what they are, in a message to the user; at most 63 letters
+-  n    - how many
+
+   Input/Output Parameter:
+.  value - [n] the numbers; where the archive is filled those of rank 0 count and other ranks may give `NULL`, where it is read all ranks
+           get them
+
+   Level: developer
+
+.seealso: `AbutArchiveInts()`
+@*/
+PetscErrorCode AbutArchiveReals(AbutArchive ar, const char name[], PetscInt n, PetscReal value[])
+{
+  PetscFunctionBegin;
+  PetscCall(AbutArchiveTitle_Private(ar, name, 'r', &n));
+  if (ar->file) PetscCall(AbutArchiveGet_Private(ar, name, sizeof(PetscReal) * n, value));
+  else PetscCall(AbutArchivePut_Private(ar, sizeof(PetscReal) * n, value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutArchiveString - A text into or out of an archive
+
+   Collective
+
+   Input Parameters:
++  ar   - the archive
+-  name - what it is, in a message to the user; at most 63 letters
+
+   Input/Output Parameter:
+.  text - the text; where the archive is read, a new one, to be freed with `PetscFree()`
+
+   Level: developer
+
+.seealso: `AbutArchiveInts()`, `AbutArchiveFit()`
+@*/
+PetscErrorCode AbutArchiveString(AbutArchive ar, const char name[], char **text)
+{
+  PetscInt n = ar->file ? -1 : (PetscInt)strlen(*text);
+
+  PetscFunctionBegin;
+  PetscCall(AbutArchiveTitle_Private(ar, name, 's', &n));
+  if (!ar->file) {
+    PetscCall(AbutArchivePut_Private(ar, n, *text));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(PetscCalloc1(n + 1, text));
+  PetscCall(AbutArchiveGet_Private(ar, name, n, *text));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutArchiveFit - A text that must be the same where the archive is filled and where it is read: what a scene has to have in common
+
+   Collective
+
+   Input Parameters:
++  ar   - the archive
+.  name - what it is, in a message to the user; at most 63 letters
+-  text - the text here
+
+   Level: developer
+
+   Note:
+   Another text in the archive is a bad input that shows both.
+
+.seealso: `AbutArchiveString()`
+@*/
+PetscErrorCode AbutArchiveFit(AbutArchive ar, const char name[], const char text[])
+{
+  char *there = (char *)text;
+
+  PetscFunctionBegin;
+  PetscCall(AbutArchiveString(ar, name, &there));
+  if (!ar->file) PetscFunctionReturn(PETSC_SUCCESS);
+  AbutCheckInput(!strcmp(there, text), ar->comm, "%s: %s is of another scene: %s is \"%s\" there and \"%s\" here", ar->key, ar->file, name,
+                 there, text);
+  PetscCall(PetscFree(there));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutArchiveDestroy - Frees an archive; what was not written is lost
+
+   Collective
+
+   Input Parameter:
+.  ar - the archive; set to `NULL`
+
+   Level: developer
+
+.seealso: `AbutArchiveCreate()`, `AbutArchiveWrite()`
+@*/
+PetscErrorCode AbutArchiveDestroy(AbutArchive *ar)
+{
+  PetscFunctionBegin;
+  if (!*ar) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree((*ar)->file));
+  PetscCall(PetscFree((*ar)->key));
+  PetscCall(PetscFree((*ar)->byte));
+  PetscCall(PetscFree(*ar));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,149 @@
+"""Runs that are stopped and go on: -checkpoint, -restart. What a run that went on gives is that of the run that was not stopped: to the last digit on the same ranks,
+to round-off on others."""
+
+import os, random, re, shutil, signal, subprocess, tempfile, time
+
+from abut import LAYERS, PROGRAM, ROOT, read_csv, read_record, run, run_error
+
+EXACT = os.path.join(ROOT, "examples", "studies", "accuracy", "layers_exact.yml")
+STACK = os.path.join(ROOT, "examples", "stack", "stack.yml")
+FOLLOWED = (EXACT, "-lower_mesh_order 3 -upper_mesh_order 3 -adaptor_target 1e-3 -adaptor_jump 2 -adaptor_settle yes -adaptor_peak 1e-4")
+TRIANGLES = (EXACT, "-lower_mesh_order 2 -upper_mesh_order 2 -lower_mesh_shape triangle -upper_mesh_cells 6,2 -adaptor_target 5e-3")
+INTERLEAVED = (LAYERS, "-adaptor_threshold 0.2 -scene_interleave yes -snes_type ddneumann")
+COUNTED = re.compile(r"time\.|memory|residual|balance|complementarity|penetration|check|error\.loop|error\.linear|slack")
+
+
+def stopped(folder, scene, every=1, ranks=1):
+    """The record of a run that writes checkpoints, and those of its cycles that it did not overwrite, by the cycle they go on with"""
+    last = run(*scene, f"-checkpoint {folder}/last -checkpoint_every {every}", f"-record_csv {folder}/all.csv", ranks=ranks)
+    return last, read_csv(f"{folder}/all.csv")
+
+
+def same(one, other, tolerance):
+    """Keys, and values: all of them to the last digit, or without those of round-off to a relative tolerance"""
+    assert list(one) == list(other), set(one) ^ set(other)
+    for key, value in one.items():
+        if key.startswith(("time.", "memory")):
+            continue
+        if not tolerance or isinstance(value, str):
+            assert value == other[key], (key, value, other[key])
+        elif not COUNTED.search(key):
+            assert abs(value - other[key]) <= tolerance * abs(value), (key, value, other[key])
+
+
+def test_a_run_that_goes_on_ends_as_if_it_had_not_been_stopped():
+    for scene in FOLLOWED, TRIANGLES, INTERLEAVED:
+        with tempfile.TemporaryDirectory() as folder:
+            whole, cycles = stopped(folder, scene)
+            assert len(cycles) > 4, cycles
+            on = run(*scene, f"-restart {folder}/last -record_csv {folder}/on.csv")
+            same(whole, on, 0)
+            rows = read_csv(f"{folder}/on.csv")
+            assert len(rows) == len(cycles)
+            for row, before in zip(rows, cycles):
+                same(before, row, 0)
+
+
+def test_on_any_number_of_ranks():
+    for scene in FOLLOWED, TRIANGLES:
+        with tempfile.TemporaryDirectory() as folder:
+            whole, _ = stopped(folder, scene, ranks=2)
+            for ranks in 1, 2, 3, 4:
+                same(whole, run(*scene, f"-restart {folder}/last", ranks=ranks), 1e-8)
+
+
+def test_every_other_cycle():
+    """The last checkpoint is that of an even cycle, and a run goes on from it with as many cycles as are left"""
+    with tempfile.TemporaryDirectory() as folder:
+        whole, cycles = stopped(folder, FOLLOWED, every=2)
+        on = run(*FOLLOWED, f"-restart {folder}/last")
+        first = next(int(line.split()[0]) for line in on.stdout.splitlines() if re.match(r" +\d+ +\d+ ", line))
+        assert first % 2 == 1 and len(cycles) - 2 < first <= len(cycles), (first, len(cycles))
+        same(whole, on, 0)
+
+
+def test_a_run_that_is_killed_loses_no_cycle_that_it_has_finished():
+    """At 20 moments of a run that takes some seconds: the checkpoint is there, goes on after the last cycle that was said to be finished or the one before,
+    whose checkpoint was just being written, and ends as the run that was not killed"""
+    scene = (EXACT, "-lower_mesh_order 2 -upper_mesh_order 2 -adaptor_target 6e-4 -adaptor_bulk 0.3")
+    whole = run(*scene)
+    command = [PROGRAM, "-options_file", scene[0], *scene[1].split()]
+    start = time.time()
+    subprocess.run(command, stdout=subprocess.DEVNULL, check=True)
+    length, moments = time.time() - start, random.Random(5)
+    gone_on = 0
+    for k in range(20):
+        with tempfile.TemporaryDirectory() as folder:
+            environment = {**os.environ, "TMPDIR": folder}
+            with open(f"{folder}/said", "w") as said:
+                process = subprocess.Popen(["stdbuf", "-oL", *command, "-checkpoint", f"{folder}/last"], stdout=said, env=environment)
+                time.sleep(length * (0.2 + 0.8 * moments.random()))
+                process.send_signal(signal.SIGKILL)
+                process.wait()
+            with open(f"{folder}/said") as said:
+                finished = [int(line.split()[0]) for line in said if re.match(r" +\d+ +\d+ .*\d\n", line)]
+            if not os.path.exists(f"{folder}/last"):
+                assert len(finished) <= 1, finished
+                continue
+            on = run(*scene, f"-restart {folder}/last")
+            first = next(int(line.split()[0]) for line in on.stdout.splitlines() if re.match(r" +\d+ +\d+ ", line))
+            assert not finished or first >= finished[-1], (first, finished)
+            same(whole, on, 0)
+            gone_on += 1
+    assert gone_on > 5, gone_on
+
+
+def test_fields_and_rows_go_on_too():
+    with tempfile.TemporaryDirectory() as folder:
+        for kind in "xdmf", "vtu":
+            out = f"-output {folder}/run.{kind}"
+            run(*FOLLOWED, out, f"-checkpoint {folder}/last")
+            index = f"{folder}/run." + {"xdmf": "xdmf", "vtu": "pvd"}[kind]
+            with open(index) as f:
+                before = f.read()
+            os.remove(index)
+            run(*FOLLOWED, out, f"-restart {folder}/last")
+            with open(index) as f:
+                assert f.read() == before, kind
+            run(*FOLLOWED, f"-output {folder}/other.{kind}", f"-restart {folder}/last")
+            with open(f"{folder}/other." + index.split(".")[-1]) as f:
+                cycles = re.findall(r"cycle_(\d+)\"|timestep=\"(\d+)\"", f.read())
+            assert len(set(cycles)) == 1, cycles  # only the last one
+            run(*FOLLOWED, f"-restart {folder}/last")
+
+
+def test_files_that_are_no_checkpoint_of_this_scene_are_refused():
+    with tempfile.TemporaryDirectory() as folder:
+        run(*FOLLOWED, f"-checkpoint {folder}/good")
+        with open(f"{folder}/good", "rb") as f:
+            good = f.read()
+        size = len(good)
+        bad = {
+            "is cut off": [good[:20], good[: size // 2], good[:-1]],
+            "is not a checkpoint": [b"", b"abc", open(EXACT, "rb").read()],
+            "is damaged: its checksum does not fit": [good + b"x", good[: size // 2] + bytes([good[size // 2] ^ 1]) + good[size // 2 + 1 :]],
+            "has version 2, and this program reads version 1": [good[:8] + b"\2" + good[9:]],
+            "was written on a machine with another order of bytes": [good[:16] + good[16:24][::-1] + good[24:]],
+        }
+        for says, files in bad.items():
+            for content in files:
+                with open(f"{folder}/bad", "wb") as f:
+                    f.write(content)
+                line = run_error(*FOLLOWED, f"-restart {folder}/bad")
+                assert f"restart: {folder}/bad {says}; give one that -checkpoint has written" in line, (says, line)
+        for options, says in (
+            ("-lower_mesh_cells 6,2", 'its mesh is "quads of order 3, 8 by 2 from 0,0 to 4,1" there and "quads of order 3, 6 by 2 from 0,0 to 4,1" here'),
+            ("-upper_mesh_order 2", 'its mesh is "quads of order 3'),
+        ):
+            line = run_error(*FOLLOWED, options, f"-restart {folder}/good")
+            assert "good is of another scene: " in line and says in line, line
+        assert "restart: " in run_error(*FOLLOWED, f"-restart {folder}/nowhere")
+        shutil.copy(f"{folder}/good", f"{folder}/again")
+        run(*FOLLOWED, f"-restart {folder}/again -checkpoint {folder}/again")  # a run may write to the file it came from
+
+
+def test_keys_that_cannot_be():
+    assert "checkpoint: the scene has no adaptor" in run_error(STACK, "-checkpoint /tmp/abut_checkpoint")
+    assert "checkpoint_every: 0 is no number of cycles" in run_error(*FOLLOWED, "-checkpoint /tmp/abut_checkpoint -checkpoint_every 0")
+    assert "checkpoint_every: nothing in this scene reads this key" in run_error(*FOLLOWED, "-checkpoint_every 2")
+    assert "checkpoint: there is no folder" in run_error(*FOLLOWED, "-checkpoint nowhere/at/all")
