@@ -86,3 +86,11 @@ def run_error(scene, *options, ranks=1):
     assert len(lines) == 1, f"one line expected on stderr, not {len(lines)}:\n{record.stderr}"
     assert not record, f"a record was written although the input was bad: {dict(record)}"
     return lines[0]
+
+
+def case(name, criterion, measured, most, least=None):
+    """A line of the table of `make suite`: of a case of tests/cases.py, what was measured and what it may be; anything else is an error"""
+    good = measured <= most and (least is None or measured >= least)
+    bound = f"at most {most:g}" if least is None else f"{least:g} to {most:g}"
+    print(f"case {name} | {criterion} | {measured:.3g} | {bound} | {'pass' if good else 'FAIL'}", flush=True)
+    assert good, (name, criterion, measured, most, least)

@@ -5,9 +5,11 @@ Three kinds of tests:
   build/tests/ck_X       a unit test, from tests/unit/ck_X.c; on 1, 2 and 3 ranks, or as its source says: /* ranks: 1 */
   tests/*/test_X.py      each function test_... is one test: it fails by raising, is skipped by raising unittest.SkipTest
   tests/*.sh, tests/*/test_X.sh   fails by its exit status, is skipped by 77
-Each runs in a process of its own, from the top folder, with a time limit; what a failed one said is printed.
+Those in tests/long/ are run only if asked for. Each runs in a process of its own, from the top folder, with a time limit; what a failed one said is printed.
 """
-import argparse, concurrent.futures, glob, importlib.util, os, re, signal, subprocess, sys, tempfile, time, traceback, unittest
+import argparse, collections, concurrent.futures, glob, importlib.util, os, re, signal, subprocess, sys, tempfile, time, traceback, unittest
+
+import cases
 
 SELF = os.path.abspath(__file__)
 ROOT = os.path.dirname(os.path.dirname(SELF))
@@ -46,8 +48,15 @@ def unit_tests(build, quick):
             yield f"{source} on {n}", (["mpiexec", "-n", str(n)] if n > 1 else []) + [program]
 
 
-def python_tests():
+def measures(source):
+    with open(source) as f:
+        return bool(re.search(r"\b(case|CkCase)\(", f.read()))
+
+
+def python_tests(long):
     for source in sorted(glob.glob("tests/*/test_*.py")):
+        if source.startswith("tests/long/") and not long:
+            continue
         with open(source) as f:
             for name in re.findall(r"^def (test_\w+)\(", f.read(), re.M):
                 yield f"{source}:{name}", [sys.executable, SELF, "--function", source, name]
@@ -106,34 +115,45 @@ def main():
     parser.add_argument("part", nargs="*", help="run only tests with one of these in their name")
     parser.add_argument("--build", default="build", help="build folder [build]")
     parser.add_argument("--quick", action="store_true", help="unit tests on one rank, and bad input")
+    parser.add_argument("--long", action="store_true", help="also what takes minutes")
+    parser.add_argument("--suite", action="store_true", help="the tests that measure cases of tests/cases.py, and their table")
     parser.add_argument("--list", action="store_true", help="only print the names")
     parser.add_argument("-j", type=int, default=1, help="tests at a time [1]; times are then worth little")
     parser.add_argument("--limit", type=float, default=300, help="seconds for one test [300]")
     args = parser.parse_args()
 
     os.environ.update({key: os.environ.get(key, value) for key, value in MPI.items()}, ABUT_BUILD=os.path.abspath(args.build))
-    tests = list(unit_tests(args.build, args.quick)) + list(python_tests()) + list(shell_tests())
+    tests = list(unit_tests(args.build, args.quick)) + list(python_tests(args.long)) + list(shell_tests())
     if args.quick:
         tests = [t for t in tests if t[0].startswith(("tests/unit/", "tests/errors/", "tests/deps"))]
+    if args.suite:
+        tests = [t for t in tests if measures(t[0].split(":")[0].split(" on ")[0])]
     tests = [t for t in tests if not args.part or any(part in t[0] for part in args.part)]
     if args.list:
         print("\n".join(name for name, _ in tests))
         return 0
 
     count = {"passed": 0, "FAILED": 0, "skipped": 0}
+    measured = collections.defaultdict(list)
     start = time.time()
     with concurrent.futures.ThreadPoolExecutor(args.j) as pool:
         for name, status, seconds, output in pool.map(lambda t: run(t, args.limit), tests):
             verdict = {0: "passed", SKIPPED: "skipped"}.get(status, "FAILED")
             count[verdict] += 1
+            for case, *row in cases.read(output):
+                measured[case].append(tuple(row))
             print(f"{verdict:8}{seconds:7.1f} s  {name}", flush=True)
             if verdict == "FAILED":
                 print(f"    exit status {status}\n" + re.sub("^", "    | ", output.rstrip(), flags=re.M), flush=True)
             elif verdict == "skipped":
                 print("    " + (output.strip().splitlines() or ["no reason given"])[-1], flush=True)
+    good = True
+    if args.suite:
+        lines, good = cases.table(measured)
+        print("\n" + "\n".join(lines) + "\n")
     print(f"{time.time() - start:.0f} s")
     print(f"{count['passed']} passed, {count['FAILED']} failed" + (f", {count['skipped']} skipped" if count["skipped"] else ""))
-    return 1 if count["FAILED"] or not tests else 0
+    return 1 if count["FAILED"] or not tests or (args.suite and not args.part and not good) else 0
 
 
 if __name__ == "__main__":

@@ -26,6 +26,16 @@ static inline PetscErrorCode CkKeepLine(PETSC_UNUSED MPI_Comm comm, PETSC_UNUSED
 
 #define CkOk(call) ck_assert_int_eq((call), 0)
 
+/* A line of the table of `make suite`: of a case of tests/cases.py, what was measured and the most it may be */
+static inline void CkCase(const char name[], const char criterion[], double measured, double most)
+{
+  PetscMPIInt rank;
+
+  CkOk(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
+  if (!rank) printf("case %s | %s | %.3g | at most %g | %s\n", name, criterion, measured, most, measured <= most ? "pass" : "FAIL");
+  ck_assert_double_le(measured, most);
+}
+
 /* Ranks must not fork; what failed on one rank has failed */
 static inline int CkRun(Suite *suite)
 {
