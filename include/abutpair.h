@@ -26,6 +26,7 @@ typedef struct {
   PetscReal contact_edge;               /* from the closed end of the shared part, else half the contact's width: see AbutPairGetEdges() */
   PetscReal penetration_max;            /* of the averaged nodal penetration */
   PetscReal complementarity; /* largest p_i*|p_i*theta - penetration_i| over p_max times what two layers and theta give under p_max */
+  PetscReal excess;          /* largest penetration beyond p_i*theta, over what two layers and theta give under p_max */
   PetscReal balance;         /* |sum of forces on both sides| / force */
   PetscReal energy;          /* J_theta, eq. (15) */
   PetscInt  active, nodes;

@@ -35,6 +35,18 @@ static PetscErrorCode AbutPairReadPressures_Private(AbutPair pair, const PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Displacement, or gap where nothing moves */
+static PetscReal AbutPairLargest_Private(AbutPair pair, const PetscReal u1[], const PetscReal u2[])
+{
+  PetscReal largest = 0., gap = 0.;
+
+  for (PetscInt i = 0; i < pair->n[0]; ++i) largest = PetscMax(largest, PetscAbsReal(u1[i]));
+  for (PetscInt i = 0; i < pair->n[1]; ++i) largest = PetscMax(largest, PetscAbsReal(u2[i]));
+  for (PetscInt i = 0; i < pair->n[pair->which]; ++i)
+    if (pair->D[i] > 0.) gap = PetscMax(gap, PetscAbsReal(pair->F[i] / pair->D[i]));
+  return largest > 0. ? largest : gap;
+}
+
 /*@C
    AbutPairGetState - Forces, contact zone and the residuals of the contact conditions (7)-(10) of the paper
 
@@ -73,6 +85,7 @@ PetscErrorCode AbutPairGetState(AbutPair pair, const PetscReal u1[], const Petsc
     state->energy += 0.5 * pair->theta * p[i] * p[i] * pair->D[i];
     state->penetration_max = PetscMax(state->penetration_max, g[i]);
     state->complementarity = PetscMax(state->complementarity, p[i] * PetscAbsReal(p[i] * pair->theta - g[i]));
+    state->excess          = PetscMax(state->excess, g[i] - p[i] * pair->theta);
     if (p[i] > 0.) {
       ++state->active;
       state->contact_length += pair->D[i];
@@ -80,7 +93,10 @@ PetscErrorCode AbutPairGetState(AbutPair pair, const PetscReal u1[], const Petsc
   }
   PetscCall(AbutPairReadPressures_Private(pair, p, state));
   PetscCall(AbutPairGetCompliance(pair, compliance));
-  if (largest > 0.) state->complementarity /= (compliance[0] + compliance[1] + pair->theta) * PetscSqr(largest);
+  if (largest > 0.) {
+    state->complementarity /= (compliance[0] + compliance[1] + pair->theta) * PetscSqr(largest);
+    state->excess /= (compliance[0] + compliance[1] + pair->theta) * largest;
+  } else if (state->excess > 0.) state->excess /= AbutPairLargest_Private(pair, u1, u2); /* overlapping, and no force between them */
   state->contact_edge = AbutPairEdge_Private(pair, g, p);
   PetscCall(PetscMalloc2(pair->n[0], &f[0], pair->n[1], &f[1]));
   PetscCall(AbutPairComputeForce(pair, p, f[0], f[1]));

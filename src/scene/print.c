@@ -137,6 +137,8 @@ PetscErrorCode AbutScenePrintEnd_Private(AbutScene scene)
   PetscCall(AbutInterfaceGetFloating(scene->iface, &floating));
   if (floating[0]) PetscCall(PetscPrintf(comm, "%s\n", floating));
   if (scene->status == 3) PetscCall(AbutScenePrintLimit_Private(scene));
+  else if (!strcmp(scene->verdict, "inconsistent") && scene->wrong[0])
+    PetscCall(PetscPrintf(comm, "verdict: %s (%s)\n", scene->verdict, scene->wrong));
   else PetscCall(PetscPrintf(comm, "verdict: %s\n", scene->verdict));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -42,11 +42,11 @@ static PetscErrorCode AbutSceneScales_Private(AbutBody body, PetscReal *force, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode AbutSceneRecordBodies_Private(AbutScene scene, PetscBool *consistent)
+static PetscErrorCode AbutSceneRecordBodies_Private(AbutScene scene)
 {
   AbutRecorder rec      = scene->recorder;
   PetscInt     unknowns = 0;
-  PetscReal    strain = 0., done = 0., linear = 0., balance = 0., identity = 0.;
+  PetscReal    strain = 0., done = 0.;
 
   PetscFunctionBegin;
   for (PetscInt b = 0; b < scene->nbodies; ++b) {
@@ -85,19 +85,16 @@ static PetscErrorCode AbutSceneRecordBodies_Private(AbutScene scene, PetscBool *
     unknowns += n;
     done += work;
     strain += energy;
-    linear = PetscMax(linear, residual);
+    AbutSceneAddCheck_Private(scene, ABUT_CHECK_LINEAR, residual);
     PetscCall(AbutSceneScales_Private(scene->body[b], &force, &floor));
     for (PetscInt d = 0; d < 2; ++d) force = PetscMax(force, PetscAbsReal(reaction[d]));
-    for (PetscInt d = 0; d < 2 && force > 0.; ++d) balance = PetscMax(balance, PetscAbsReal(reaction[d] + applied[d]) / force);
-    if (floor > 0.) identity = PetscMax(identity, PetscAbsReal(2. * energy - work) / PetscMax(2. * energy, floor));
+    for (PetscInt d = 0; d < 2 && force > 0.; ++d)
+      AbutSceneAddCheck_Private(scene, ABUT_CHECK_BALANCE, PetscAbsReal(reaction[d] + applied[d]) / force);
+    if (floor > 0.) AbutSceneAddCheck_Private(scene, ABUT_CHECK_ENERGY, PetscAbsReal(2. * energy - work) / PetscMax(2. * energy, floor));
   }
   PetscCall(AbutRecorderSetInt(rec, "unknowns", unknowns));
   PetscCall(AbutRecorderSetReal(rec, "energy.strain", strain));
   PetscCall(AbutRecorderSetReal(rec, "energy.work", done));
-  PetscCall(AbutRecorderSetReal(rec, "residual.linear", linear));
-  PetscCall(AbutRecorderSetReal(rec, "check.balance", balance));
-  PetscCall(AbutRecorderSetReal(rec, "check.energy", identity));
-  *consistent = (PetscBool)(balance <= scene->consistent && identity <= scene->consistent);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -127,7 +124,7 @@ static PetscErrorCode AbutSceneRecordPair_Private(AbutScene scene, const char na
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode AbutSceneRecordPairs_Private(AbutScene scene, PetscBool *consistent)
+static PetscErrorCode AbutSceneRecordPairs_Private(AbutScene scene)
 {
   AbutRecorder rec     = scene->recorder;
   PetscReal    penalty = 0., residual, pressure;
@@ -144,7 +141,11 @@ static PetscErrorCode AbutSceneRecordPairs_Private(AbutScene scene, PetscBool *c
     PetscCall(AbutInterfaceGetPairState(scene->iface, i, &s));
     PetscCall(AbutSceneRecordPair_Private(scene, name, theta, &s));
     penalty += s.energy;
-    *consistent = (PetscBool)(*consistent && s.balance <= scene->consistent && s.pressure_min >= 0.);
+    AbutSceneAddCheck_Private(scene, ABUT_CHECK_CONTACT, s.balance);
+    AbutSceneAddCheck_Private(scene, ABUT_CHECK_TENSION,
+                              s.pressure_min < 0. ? -s.pressure_min / PetscMax(s.pressure_max, -s.pressure_min) : 0.);
+    AbutSceneAddCheck_Private(scene, ABUT_CHECK_COMPLEMENTARITY, s.complementarity);
+    AbutSceneAddCheck_Private(scene, ABUT_CHECK_PENETRATION, s.excess);
   }
   PetscCall(AbutInterfaceGetResidual(scene->iface, &residual, &pressure));
   PetscCall(AbutRecorderSetReal(rec, "energy.penalty", penalty));
@@ -216,14 +217,16 @@ static PetscErrorCode AbutSceneRecordSweeps_Private(AbutScene scene)
 }
 
 /* The keys of this cycle; consistent: the run agrees with itself (balance of forces, energy identity, no tension) */
-PetscErrorCode AbutSceneRecord_Private(AbutScene scene, PetscBool *consistent)
+PetscErrorCode AbutSceneRecord_Private(AbutScene scene, PetscBool last, PetscBool *consistent)
 {
   PetscFunctionBegin;
   PetscCall(AbutRecorderSetString(scene->recorder, "verdict", scene->verdict));
   PetscCall(AbutRecorderSetInt(scene->recorder, "cycles", scene->cycle + 1));
   PetscCall(AbutSceneRecordSweeps_Private(scene));
-  PetscCall(AbutSceneRecordBodies_Private(scene, consistent));
-  PetscCall(AbutSceneRecordPairs_Private(scene, consistent));
+  AbutSceneBeginChecks_Private(scene);
+  PetscCall(AbutSceneRecordBodies_Private(scene));
+  PetscCall(AbutSceneRecordPairs_Private(scene));
+  PetscCall(AbutSceneEndChecks_Private(scene, last, consistent));
   PetscCall(AbutSceneRecordTies_Private(scene));
   PetscCall(AbutSceneRecordEstimates_Private(scene));
   PetscCall(AbutSceneRecordBudget_Private(scene));

@@ -271,7 +271,7 @@ PetscErrorCode AbutSceneSolve(AbutScene scene)
   PetscCall(AbutScenePrintHeader_Private(scene));
   for (; !ends; ++scene->cycle) {
     PetscCall(AbutSceneCycle_Private(scene, marks, &converged, &adapt, &nmarked));
-    PetscCall(AbutSceneRecord_Private(scene, &consistent));
+    PetscCall(AbutSceneRecord_Private(scene, (PetscBool)(adapt != ABUT_ADAPT_REFINED), &consistent));
     ends = AbutSceneEnds_Private(scene, converged, consistent, adapt);
     PetscCall(AbutRecorderSetString(scene->recorder, "verdict", scene->verdict));
     PetscCall(AbutSceneRecordTimes_Private(scene));

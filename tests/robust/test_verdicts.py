@@ -80,3 +80,20 @@ def test_a_linear_solver_that_may_take_1_iteration_in_one_body():
         for loop in LOOPS:
             fails("linear_solver", layers(4), loop, f"-{body}_pc_type jacobi -{body}_ksp_type cg -{body}_ksp_max_it 1")
     fails("linear_solver", layers(4), LOOPS[1], "-lower_pc_type jacobi -lower_ksp_type cg -lower_ksp_max_it 1", ranks=2)
+
+
+def test_an_answer_that_does_not_agree_with_itself_is_named_with_the_check():
+    """Linear problems solved to 1e-3 only, which is enough for a loop that may stop at 1e-2: the reactions do not balance the forces"""
+    inexact = "-snes_rtol 1e-2 -lower_pc_type hypre -lower_ksp_type cg -lower_ksp_rtol 1e-3"
+    record = fails("inconsistent", layers(8), "-snes_type ddactive", inexact)
+    assert record["check.balance"] > 1e-6 > record["check.contact"], record
+    assert record.stdout.splitlines()[-1] == f"verdict: inconsistent (check.balance is {record['check.balance']:.2g}, and may be 1e-06)", record.stdout
+
+
+def test_every_run_has_every_check():
+    names = ["balance", "energy", "contact", "tension", "complementarity", "penetration"]
+    record = run(None, layers(8), "-snes_type ddactive")
+    assert all(0 <= record[f"check.{name}"] <= 1e-6 for name in names) and record["residual.linear"] <= 1e-6, record
+    alone = run(None, "-scene_bodies one -one_mesh_box 0,0,1,1 -one_mesh_cells 2,2 -one_material_young 1 -one_material_poisson 0.3 "
+                "-one_bc_bottom_u1 0 -one_bc_bottom_u2 0 -one_bc_top_t2 -1")
+    assert [key for key in alone if key.startswith("check.")] == ["check.balance", "check.energy"], alone

@@ -37,6 +37,18 @@ typedef enum {
   ABUT_TIMES
 } AbutTime;
 
+/* What a run checks of itself, see check.c; all relative */
+typedef enum {
+  ABUT_CHECK_BALANCE, /* reactions against loads and contact forces, of every body */
+  ABUT_CHECK_ENERGY,  /* twice the strain energy against the work */
+  ABUT_CHECK_LINEAR,  /* true residual of the linear problems */
+  ABUT_CHECK_CONTACT, /* the forces of a pair on its two bodies; those from here on need pairs */
+  ABUT_CHECK_TENSION, /* contact that pulls */
+  ABUT_CHECK_COMPLEMENTARITY,
+  ABUT_CHECK_PENETRATION, /* beyond what the penalty lets in */
+  ABUT_CHECKS
+} AbutCheck;
+
 struct _p_AbutScene {
   PETSCHEADER(int);
   PetscInt      nbodies, npairs, nprobes;
@@ -52,10 +64,12 @@ struct _p_AbutScene {
   PetscInt      start;
   PetscBool     interleave, setupcalled;
   PetscReal     eps_u;
-  PetscReal     loop_share; /* of the estimated error that the loop may leave on a mesh to be refined */
-  PetscBool     cold;       /* every mesh begins without what the last one left */
-  PetscReal     tol;        /* relative error asked for, 0: not given */
-  PetscReal     consistent; /* relative: balance of forces, energy identity */
+  PetscReal     loop_share;         /* of the estimated error that the loop may leave on a mesh to be refined */
+  PetscBool     cold;               /* every mesh begins without what the last one left */
+  PetscReal     tol;                /* relative error asked for, 0: not given */
+  PetscReal     consistent;         /* what the checks may be */
+  PetscReal     check[ABUT_CHECKS]; /* of the present cycle */
+  char          wrong[128];         /* the first check that does not hold, in words */
 
   Vec            x; /* the trace */
   Vec            eta[ABUT_MAX_NAMES];
@@ -85,7 +99,7 @@ PETSC_INTERN PetscErrorCode AbutSceneSolverFromOptions_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutSceneCheckLoop_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutScenePrintGamma_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutSceneGetUnknowns_Private(AbutScene, PetscInt *);
-PETSC_INTERN PetscErrorCode AbutSceneRecord_Private(AbutScene, PetscBool *);
+PETSC_INTERN PetscErrorCode AbutSceneRecord_Private(AbutScene, PetscBool, PetscBool *);
 PETSC_INTERN PetscErrorCode AbutSceneRecordTimes_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutSceneRecordRatio_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutScenePrintHeader_Private(AbutScene);
@@ -98,6 +112,10 @@ PETSC_INTERN PetscErrorCode AbutSceneSettles_Private(AbutScene, PetscBool *);
 PETSC_INTERN PetscErrorCode AbutSceneAdaptBody_Private(AbutScene, AbutBody, const PetscBool[]);
 PETSC_INTERN PetscErrorCode AbutSceneFollows_Private(AbutScene, PetscBool *);
 PETSC_INTERN PetscErrorCode AbutSceneRecordTies_Private(AbutScene);
+/* check.c */
+PETSC_INTERN void           AbutSceneAddCheck_Private(AbutScene, AbutCheck, PetscReal);
+PETSC_INTERN void           AbutSceneBeginChecks_Private(AbutScene);
+PETSC_INTERN PetscErrorCode AbutSceneEndChecks_Private(AbutScene, PetscBool, PetscBool *);
 /* checkpoint.c */
 PETSC_INTERN PetscErrorCode AbutSceneCheckpointFromOptions_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutSceneCheckpoint_Private(AbutScene);
