@@ -60,9 +60,9 @@ PETSC_EXTERN PetscErrorCode AbutPairRecoverPressure(AbutPair, const PetscReal[],
 PETSC_EXTERN PetscErrorCode AbutPairGetState(AbutPair, const PetscReal[], const PetscReal[], const PetscReal[], AbutPairState *);
 /* An element of the pressure side that holds the largest pressure */
 typedef struct {
-  PetscReal x[2];   /* the node of its largest pressure */
+  PetscReal x[2];   /* where the pressure is largest on it */
   PetscReal length; /* of the element */
-  PetscReal last;   /* Legendre coefficient of the pressure on it, relative to the largest pressure of the pair */
+  PetscReal last;   /* coefficient of the pressure on it, relative to the largest pressure of the pair: see AbutPairGetPeaks() */
 } AbutPeak;
 PETSC_EXTERN PetscErrorCode AbutPairGetPeaks(AbutPair, const PetscReal[], PetscReal, PetscInt, PetscInt *, AbutPeak[]);
 PETSC_EXTERN PetscErrorCode AbutPairGetEdges(AbutPair, const PetscReal[], const PetscReal[], const PetscReal[], PetscInt, PetscInt *,

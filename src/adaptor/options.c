@@ -53,7 +53,8 @@ static PetscErrorCode AbutAdaptorSetBodies_Private(AbutAdaptor adaptor, char lis
 .  -adaptor_follow <bool>          - the meshes of adapted bodies move such that a vertex lies on each edge of their contacts; by default
                                      where the order is 2 or more
 .  -adaptor_settle <bool>          - a new mesh that follows is solved twice, and moves to the edges that the first solve finds
-.  -adaptor_peak <0>               - relative error that the largest pressure of each pair may have; 0 leaves it to the energy
+.  -adaptor_peak <0>               - how large the last coefficient of the pressure may be on elements that hold the largest one, relative;
+                                     0 leaves that pressure to the energy
 .  -adaptor_bodies list            - names of the bodies to adapt, separated by commas; all if it is not given
 .  -adaptor_max_level <8>          - cells of this level are not refined any more; the first mesh has level 0
 -  -adaptor_max_unknowns <1000000> - of one body: no refinement that would pass it
@@ -73,7 +74,9 @@ static PetscErrorCode AbutAdaptorSetBodies_Private(AbutAdaptor adaptor, char lis
 
    The energy has nearly nothing of an error of the pressure far from the edges, so meshes that are made for the energy leave the cells
    below the largest pressure as they were. With `-adaptor_peak` the cells of both bodies that touch it are refined whatever their
-   indicators, as long as `AbutPairGetPeaks()` finds it unresolved; no cell of the other body becomes shorter than those.
+   indicators, as long as `AbutPairGetPeaks()` finds it unresolved and what the loop leaves is less: the loop runs to 0.003 of the key on all
+   meshes. What the edge of the contact does to the largest pressure is not in it: on two layers of order 3 and a target of 0.02 it stays
+   at 1e-5 whatever the key says. Corners, where one side ends and the other goes on, are left alone.
 
    Limits: where contact reaches the end of the part that both sides share, as below the corner of a punch, there is no edge to follow.
    No type coarsens.
@@ -115,10 +118,12 @@ PetscErrorCode AbutAdaptorSetFromOptions(AbutAdaptor adaptor)
   if (set) adaptor->followset = PETSC_TRUE;
   PetscCall(AbutOptionsBool(PetscOptionsObject, "-adaptor_settle", "a new mesh that follows moves again after its first solve",
                             &adaptor->settle, NULL));
-  PetscCall(AbutOptionsReal(PetscOptionsObject, "-adaptor_peak", "relative error that the largest pressure of each pair may have",
+  PetscCall(AbutOptionsReal(PetscOptionsObject, "-adaptor_peak", "last coefficient of the pressure on elements that hold the largest",
                             &adaptor->peak, NULL));
-  AbutCheckInput(adaptor->peak >= 0. && adaptor->peak < 1., comm,
-                 "adaptor_peak: %g is not a relative error; give a number from 0 to 1, for example 1e-4, or 0 to leave it to the energy",
+  AbutCheckInput(adaptor->peak == 0. || (adaptor->peak >= 1e-8 && adaptor->peak < 1.), comm,
+                 "adaptor_peak: %g is not a part of the largest pressure; give a number from 1e-8 to 1, for example 1e-4, or 0 to leave it "
+                 "to "
+                 "the energy",
                  (double)adaptor->peak);
   PetscTryTypeMethod(adaptor, setfromoptions, PetscOptionsObject);
   PetscOptionsEnd();

@@ -54,16 +54,24 @@ PetscErrorCode AbutBodyRightHandSide_Private(AbutBody body, Vec b)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A x = rhs, both without a part along the free modes: that of the right-hand side has no solution, that of the solution is not determined.
-   KSPSolve() of PETSc 3.18 and 3.22 looks for the null space of the right-hand side in P, where there is none, so the right-hand side is
-   ours to clean; that of A keeps the directions of a Krylov method clean, but not its start. */
+/* The right-hand side without its part along the free modes, which has no solution, and its size. KSPSolve() of PETSc 3.18 and 3.22 looks
+   for the null space of the right-hand side in P, where there is none, so it is ours to clean. */
+static PetscErrorCode AbutBodyCleanRightHandSide_Private(AbutBody body, PetscReal *size)
+{
+  PetscFunctionBegin;
+  PetscCall(MatNullSpaceRemove(body->free, body->rhs));
+  PetscCall(VecNorm(body->rhs, NORM_2, size));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A x = rhs, a clean one; the solution without a part along the free modes, which is not determined: the null space of A keeps the
+   directions of a Krylov method clean, but not its start. */
 static PetscErrorCode AbutBodySolveLinear_Private(AbutBody body, Vec x)
 {
   PetscInt  its;
   PetscReal size;
 
   PetscFunctionBegin;
-  PetscCall(MatNullSpaceRemove(body->free, body->rhs));
   PetscCall(KSPSolve(body->ksp, body->rhs, x));
   PetscCall(MatNullSpaceRemove(body->free, x));
   PetscCall(VecNorm(x, NORM_INFINITY, &size));
@@ -103,7 +111,7 @@ PetscErrorCode AbutBodySolve(AbutBody body, Vec contact)
   if (contact) PetscCall(VecCopy(contact, body->contact));
   else PetscCall(VecZeroEntries(body->contact));
   PetscCall(AbutBodyRightHandSide_Private(body, body->rhs));
-  PetscCall(VecNorm(body->rhs, NORM_2, &body->whole));
+  PetscCall(AbutBodyCleanRightHandSide_Private(body, &body->whole));
   PetscCall(AbutBodySolveLinear_Private(body, body->u));
   PetscCall(AbutBodySpread_Private(body));
   PetscCall(PetscLogEventEnd(ABUTBODY_Solve, body, 0, 0, 0));
@@ -128,8 +136,8 @@ PetscErrorCode AbutBodySolve(AbutBody body, Vec contact)
    Counts as a solve, except for contact forces that are all zero, which cost nothing. Whether the linear solver converged is asked of its
    `KSP`; after a failure w may be zero.
 
-   An iterative solver need not leave less than it left in `AbutBodySolve()`: its relative tolerance is that one's, in proportion to the
-   sizes of the right-hand sides, up to a ten thousandth, with which the loops still take no more sweeps than with exact answers.
+   An iterative solver need not leave less than it left in `AbutBodySolve()`: its relative tolerance is half of that one's, in
+   proportion to the sizes of the right-hand sides, up to a ten thousandth, with which the loops still take no more sweeps than with exact answers.
 
    With free modes, what the forces have along them is left out, and w has no part along them.
 
@@ -146,11 +154,11 @@ PetscErrorCode AbutBodySolveIncrement(AbutBody body, Vec contact, Vec w)
   PetscCall(VecCopy(contact, body->rhs));
   PetscCall(VecISSet(body->rhs, body->constrained, 0.));
   PetscCall(VecZeroEntries(w));
-  PetscCall(VecNorm(body->rhs, NORM_2, &size));
+  PetscCall(AbutBodyCleanRightHandSide_Private(body, &size));
   PetscCall(KSPGetTolerances(body->ksp, &rtol, NULL, NULL, NULL));
   if (size == 0.) body->ksp->reason = KSP_CONVERGED_ATOL;
   else {
-    const PetscReal enough = PetscMax(rtol, PetscMin(ABUT_INCREMENT, rtol * body->whole / size));
+    const PetscReal enough = PetscMax(rtol, PetscMin(ABUT_INCREMENT, 0.5 * rtol * body->whole / size));
 
     PetscCall(KSPSetTolerances(body->ksp, enough, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
     PetscCall(AbutBodySolveLinear_Private(body, w));

@@ -3,7 +3,7 @@
 /* The peak of the contact pressure, and how well the elements there resolve it */
 
 /* The pressures that are read: consistent ones from order 2, where nodal ones have an error of one sign at the vertices */
-PetscErrorCode AbutPairReadPressure_Private(AbutPair pair, const PetscReal p[], PetscReal q[])
+PetscErrorCode AbutPairGetReading_Private(AbutPair pair, const PetscReal p[], PetscReal q[])
 {
   PetscFunctionBegin;
   if (pair->order[0] > 1) PetscCall(AbutPairRecoverPressure(pair, p, q));
@@ -45,6 +45,75 @@ static PetscErrorCode AbutPairLastCoefficient_Private(AbutPair pair, const Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The largest value of the function on element e, and its place: between the neighbours of the largest node, by golden sections */
+static PetscErrorCode AbutPairElementTop_Private(AbutPair pair, const PetscReal q[], PetscInt e, PetscReal *value, PetscReal *at)
+{
+  const PetscReal  golden = 0.6180339887498949;
+  const PetscInt   order  = pair->order[0];
+  const PetscReal *v      = q + order * e;
+  PetscReal        z[ABUT_SIDE_NODES_MAX], N[ABUT_SIDE_NODES_MAX], low, high;
+  PetscInt         top = 0;
+
+  PetscFunctionBegin;
+  PetscCall(AbutGetLobattoNodes(order, z, NULL));
+  for (PetscInt i = 1; i <= order; ++i)
+    if (v[i] > v[top]) top = i;
+  *value = v[top];
+  *at    = z[top];
+  low    = z[PetscMax(top - 1, 0)];
+  high   = z[PetscMin(top + 1, order)];
+  for (PetscInt step = 0; order > 1 && step < 40; ++step) {
+    PetscReal f[2] = {0., 0.}, x[2] = {high - golden * (high - low), low + golden * (high - low)};
+
+    for (PetscInt k = 0; k < 2; ++k) {
+      PetscCall(AbutEvaluateLobatto(order, x[k], N, NULL));
+      for (PetscInt i = 0; i <= order; ++i) f[k] += N[i] * v[i];
+      if (f[k] > *value) *at = x[k];
+      *value = PetscMax(*value, f[k]);
+    }
+    if (f[0] > f[1]) high = x[1];
+    else low = x[0];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The largest of the pressures that are read, on nodes and between them */
+PetscErrorCode AbutPairGetLargest_Private(AbutPair pair, const PetscReal q[], PetscReal *largest)
+{
+  const PetscInt order = pair->order[0];
+  PetscReal      node  = 0.;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < pair->n[pair->which]; ++i) node = PetscMax(node, q[i]);
+  *largest = node;
+  for (PetscInt first = 0; first + order < pair->n[pair->which]; first += order) {
+    PetscReal value, at, high = 0.;
+
+    for (PetscInt i = first; i <= first + order; ++i) high = PetscMax(high, q[i]);
+    if (high < 0.5 * node) continue; /* no polynomial of these orders rises that far above its nodes */
+    PetscCall(AbutPairElementTop_Private(pair, q, first / order, &value, &at));
+    *largest = PetscMax(*largest, value);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Does an element touch an end of the shared part that is an end of one side only? There the other body has a corner to press against, or
+   this one presses with its own, and the pressure is unbounded. */
+static PetscBool AbutPairAtCorner_Private(AbutPair pair, PetscReal from, PetscReal to)
+{
+  const AbutSide *m = pair->nodes[pair->which], *o = pair->nodes[1 - pair->which];
+  const PetscReal length = AbutPairPlace_Private(pair, m->n - 1), near = 1e-9 * length;
+  PetscReal       end[2];
+
+  for (PetscInt k = 0; k < 2; ++k) {
+    const PetscReal *x = o->x + (k ? 2 * (o->n - 1) : 0), *a = m->x, *b = m->x + 2 * (m->n - 1);
+
+    end[k] = ((x[0] - a[0]) * (b[0] - a[0]) + (x[1] - a[1]) * (b[1] - a[1])) / length;
+  }
+  if (PetscAbsReal(PetscMin(end[0], end[1])) > near && from < pair->overlap[0] + near) return PETSC_TRUE;
+  return (PetscBool)(PetscAbsReal(PetscMax(end[0], end[1]) - length) > near && to > pair->overlap[1] - near);
+}
+
 /*@C
    AbutPairGetPeaks - Elements of the pressure side that hold the largest pressure and do not resolve it
 
@@ -53,8 +122,8 @@ static PetscErrorCode AbutPairLastCoefficient_Private(AbutPair pair, const Petsc
    Input Parameters:
 +  pair      - the pair, set up
 .  p         - [nodes of the pressure side] the pressures that act, stress
-.  tolerance - relative error that the largest pressure may have, above 0
--  max       - room in peak
+.  tolerance - how large the last coefficient of the pressure may be, relative to the largest pressure, above 0
+-  max       - room in peak; there are not more than nodes
 
    Output Parameters:
 +  n    - how many elements, at most max; 0 without contact
@@ -63,13 +132,13 @@ static PetscErrorCode AbutPairLastCoefficient_Private(AbutPair pair, const Petsc
    Level: intermediate
 
    Notes:
-   An element holds the largest pressure if a pressure on it is within the tolerance of it, and resolves it if the last Legendre coefficient
-   of the pressure on the element is within the tolerance too; at order 1, the distance in the middle of the element from the parabola
-   through a neighbour.
+   An element holds the largest pressure if the pressure somewhere on it is within the tolerance of it, and resolves it if its last Legendre
+   coefficient is within the tolerance too; at order 1, the distance in the middle of the element from the parabola through a neighbour.
 
-   Limits: that is a measure, no bound. Below two layers the true error of the largest pressure is up to 3 times it at order 3 and up to 20
-   times at order 4, where the pressure of a wide contact is nearly a parabola. It does not see how coarse the other body is. A pressure
-   that is unbounded, as below the corner of a punch, is not resolved by any element.
+   Elements at a corner, where one side ends and the other goes on, are left out: the pressure is unbounded there.
+
+   Limits: the coefficient is a measure of what the element lacks, no bound of the error: that has a part from the edge of the contact and
+   from the inside of the bodies, which only the energy sees. It does not see how coarse the other body is, either.
 
 .seealso: `AbutPairRecoverPressure()`, `AbutAdaptorSetFromOptions()`
 @*/
@@ -77,25 +146,25 @@ PetscErrorCode AbutPairGetPeaks(AbutPair pair, const PetscReal p[], PetscReal to
 {
   const AbutSide *m     = pair->nodes[pair->which];
   const PetscInt  order = pair->order[0];
-  PetscReal      *q, largest = 0.;
+  PetscReal      *q, largest;
 
   PetscFunctionBegin;
   *n = 0;
   PetscCall(PetscMalloc1(m->n, &q));
-  PetscCall(AbutPairReadPressure_Private(pair, p, q));
-  for (PetscInt i = 0; i < m->n; ++i) largest = PetscMax(largest, q[i]);
+  PetscCall(AbutPairGetReading_Private(pair, p, q));
+  PetscCall(AbutPairGetLargest_Private(pair, q, &largest));
   for (PetscInt first = 0; largest > 0. && first + order < m->n && *n < max; first += order) {
-    PetscInt  top  = first;
-    PetscReal last = 0.;
+    const PetscReal  from = AbutPairPlace_Private(pair, first), to = AbutPairPlace_Private(pair, first + order);
+    const PetscReal *a = m->x + 2 * first, *b = m->x + 2 * (first + order);
+    PetscReal        last = 0., top, at;
 
-    for (PetscInt i = first + 1; i <= first + order; ++i)
-      if (q[i] > q[top]) top = i;
-    if (q[top] < (1. - tolerance) * largest) continue;
+    PetscCall(AbutPairElementTop_Private(pair, q, first / order, &top, &at));
+    if (top < (1. - tolerance) * largest || AbutPairAtCorner_Private(pair, from, to)) continue;
     PetscCall(AbutPairLastCoefficient_Private(pair, q, first / order, &last));
     if (last <= tolerance * largest) continue;
-    peak[*n].length = AbutPairPlace_Private(pair, first + order) - AbutPairPlace_Private(pair, first);
+    peak[*n].length = to - from;
     peak[*n].last   = last / largest;
-    for (PetscInt d = 0; d < 2; ++d) peak[*n].x[d] = m->x[2 * top + d];
+    for (PetscInt d = 0; d < 2; ++d) peak[*n].x[d] = 0.5 * ((1. - at) * a[d] + (1. + at) * b[d]);
     ++*n;
   }
   PetscCall(PetscFree(q));

@@ -24,13 +24,13 @@ static PetscErrorCode AbutPairReadPressures_Private(AbutPair pair, const PetscRe
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(n, &read));
-  PetscCall(AbutPairReadPressure_Private(pair, p, read));
+  PetscCall(AbutPairGetReading_Private(pair, p, read));
   state->consistent = (PetscBool)(pair->order[0] > 1);
   for (PetscInt i = 0; i < n; ++i) {
     if (pair->D[i] <= 0.) continue;
-    state->pressure_max = PetscMax(state->pressure_max, read[i]);
     state->pressure_min = PetscMin(state->pressure_min, p[i]);
   }
+  PetscCall(AbutPairGetLargest_Private(pair, read, &state->pressure_max));
   PetscCall(PetscFree(read));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -170,6 +170,24 @@ PetscErrorCode AbutSceneFollows_Private(AbutScene scene, PetscBool *follows)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Has any contact an edge, as the last solve found it? */
+static PetscErrorCode AbutSceneHasEdges_Private(AbutScene scene, PetscBool *has)
+{
+  PetscFunctionBegin;
+  *has = PETSC_FALSE;
+  for (PetscInt i = 0; i < scene->npairs && !*has; ++i) {
+    const PetscReal *u[2], *p;
+    PetscReal        x[1][2];
+    PetscInt         n;
+
+    for (PetscInt s = 0; s < 2; ++s) PetscCall(AbutInterfaceGetTrace(scene->iface, i, s, &u[s]));
+    PetscCall(AbutInterfaceGetPressure(scene->iface, i, &p));
+    PetscCall(AbutPairGetEdges(scene->pair[i], u[0], u[1], p, 1, &n, x));
+    *has = (PetscBool)(n > 0);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Are the meshes to move only, this time? */
 PetscErrorCode AbutSceneSettles_Private(AbutScene scene, PetscBool *settles)
 {
@@ -178,6 +196,7 @@ PetscErrorCode AbutSceneSettles_Private(AbutScene scene, PetscBool *settles)
   if (!scene->adaptor || scene->settled) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(AbutAdaptorSettles(scene->adaptor, settles));
   if (*settles) PetscCall(AbutSceneFollows_Private(scene, settles));
+  if (*settles) PetscCall(AbutSceneHasEdges_Private(scene, settles));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -127,11 +127,40 @@ static PetscErrorCode AbutSceneCyclesFromOptions_Private(AbutScene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A peak wants a loop that leaves less than it, and both bodies as fine as each other */
+static PetscErrorCode AbutSceneCheckPeak_Private(AbutScene scene)
+{
+  MPI_Comm  comm = PetscObjectComm((PetscObject)scene);
+  PetscReal peak, rtol;
+
+  PetscFunctionBegin;
+  PetscCall(AbutAdaptorGetPeak(scene->adaptor, &peak));
+  if (peak <= 0.) PetscFunctionReturn(PETSC_SUCCESS);
+  AbutCheckInput(!scene->interleave, comm, "adaptor_peak: needs a loop that converges on each mesh; leave it out, or scene_interleave");
+  PetscCall(SNESGetTolerances(scene->snes, NULL, &rtol, NULL, NULL, NULL));
+  AbutCheckInput(ABUT_SHARE_PEAK * peak >= rtol * (1. - 1e-9), comm,
+                 "adaptor_peak: %g is below what the loop leaves; give at least %g, or snes_rtol at most %g", (double)peak,
+                 (double)(rtol / ABUT_SHARE_PEAK), (double)(ABUT_SHARE_PEAK * peak));
+  for (PetscInt i = 0; i < scene->npairs; ++i) {
+    AbutBody bodies[2];
+    PetscInt sides[2];
+
+    PetscCall(AbutPairGetBodies(scene->pair[i], bodies, sides));
+    for (PetscInt b = 0; b < scene->nbodies; ++b) {
+      const char *name;
+
+      PetscCall(AbutBodyGetName(scene->body[b], &name));
+      AbutCheckInput(scene->estimates[b] || (scene->body[b] != bodies[0] && scene->body[b] != bodies[1]), comm,
+                     "adaptor_peak: %s is in contact and not in adaptor_bodies; adapt both bodies of each pair, or leave it out", name);
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Keys of the adaptor that speak of contacts */
 static PetscErrorCode AbutSceneCheckContactKeys_Private(AbutScene scene)
 {
   const char *const key[] = {"-adaptor_jump", "-adaptor_follow", "-adaptor_settle", "-adaptor_peak", NULL};
-  PetscReal         peak  = 0., rtol;
   PetscBool         has, settles = PETSC_FALSE, follows;
 
   PetscFunctionBegin;
@@ -145,11 +174,7 @@ static PetscErrorCode AbutSceneCheckContactKeys_Private(AbutScene scene)
   PetscCall(AbutSceneFollows_Private(scene, &follows));
   AbutCheckInput(!settles || follows, PetscObjectComm((PetscObject)scene),
                  "adaptor_settle: no mesh follows the edges of contacts; give adaptor_follow: true, or leave it out");
-  PetscCall(AbutAdaptorGetPeak(scene->adaptor, &peak));
-  PetscCall(SNESGetTolerances(scene->snes, NULL, &rtol, NULL, NULL, NULL));
-  AbutCheckInput(peak == 0. || ABUT_SHARE_PEAK * peak >= rtol, PetscObjectComm((PetscObject)scene),
-                 "adaptor_peak: %g is below what the loop leaves; give at least %g, or snes_rtol below %g", (double)peak,
-                 (double)(rtol / ABUT_SHARE_PEAK), (double)(ABUT_SHARE_PEAK * peak));
+  PetscCall(AbutSceneCheckPeak_Private(scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -234,7 +259,11 @@ PetscErrorCode AbutSceneSetFromOptions(AbutScene scene)
   if (scene->npairs) PetscCall(AbutSceneSolverFromOptions_Private(scene));
   PetscCall(AbutSceneErrorFromOptions_Private(scene, (PetscBool)(adapts || hastol), estimates));
   PetscCall(AbutSceneSetTolerance_Private(scene));
-  if (scene->npairs && scene->adaptor && !scene->interleave) PetscCall(AbutSceneCyclesFromOptions_Private(scene));
+  if (scene->npairs && scene->adaptor && !scene->interleave) {
+    PetscCall(SNESDestroy(&scene->snes)); /* now that its tolerance is known */
+    PetscCall(AbutSceneSolverFromOptions_Private(scene));
+    PetscCall(AbutSceneCyclesFromOptions_Private(scene));
+  }
   AbutCheckInput(!scene->interleave || scene->adaptor, comm,
                  "scene_interleave: the scene has no adaptor; give adaptor_type, or leave scene_interleave out");
   PetscCall(AbutSceneCheckContactKeys_Private(scene));

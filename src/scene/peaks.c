@@ -2,7 +2,7 @@
 
 /* The largest contact pressures, and the cells that are to resolve them whatever the energy says */
 
-#define ABUT_PEAKS_MAX 256 /* elements of a pair; more wait for the next mesh */
+#define ABUT_PEAK_NOISE 30. /* times the residual of the loop */
 
 /* Marks the cells of the body's side that touch a peak, unless they are shorter than the element that does not resolve it */
 static PetscErrorCode AbutSceneMarkPeak_Private(AbutBody body, PetscInt side, const AbutPeak *peak, PetscBool mark[])
@@ -23,27 +23,36 @@ static PetscErrorCode AbutSceneMarkPeak_Private(AbutBody body, PetscInt side, co
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Marks the cells of a body at the unresolved peaks of all its pairs */
+/* Marks the cells of a body at the unresolved peaks of all its pairs. What a loop leaves shows on small elements as a pressure of its own:
+   up to 3 times its residual over their part of the contact (measured, orders 2 to 4); less than ten times that is no reason to refine. */
 PetscErrorCode AbutSceneMarkPeaks_Private(AbutScene scene, AbutBody body, PetscBool mark[])
 {
-  PetscReal tolerance;
-  AbutPeak *peak;
+  PetscReal tolerance, residual, pressure;
 
   PetscFunctionBegin;
   PetscCall(AbutAdaptorGetPeak(scene->adaptor, &tolerance));
-  if (tolerance <= 0.) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(ABUT_PEAKS_MAX, &peak));
+  if (tolerance <= 0. || !scene->npairs) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AbutInterfaceGetResidual(scene->iface, &residual, &pressure));
   for (PetscInt i = 0; i < scene->npairs; ++i) {
     const PetscReal *p;
+    AbutPairState    s;
+    AbutPeak        *peak;
     AbutBody         bodies[2];
-    PetscInt         sides[2], n;
+    PetscInt         sides[2], nodes[2], n;
 
     PetscCall(AbutPairGetBodies(scene->pair[i], bodies, sides));
+    if (bodies[0] != body && bodies[1] != body) continue;
+    PetscCall(AbutPairGetSizes(scene->pair[i], nodes));
+    PetscCall(PetscMalloc1(PetscMax(nodes[0], nodes[1]), &peak));
     PetscCall(AbutInterfaceGetPressure(scene->iface, i, &p));
-    PetscCall(AbutPairGetPeaks(scene->pair[i], p, tolerance, ABUT_PEAKS_MAX, &n, peak));
-    for (PetscInt s = 0; s < 2; ++s)
-      for (PetscInt k = 0; k < n && bodies[s] == body; ++k) PetscCall(AbutSceneMarkPeak_Private(body, sides[s], &peak[k], mark));
+    PetscCall(AbutInterfaceGetPairState(scene->iface, i, &s));
+    PetscCall(AbutPairGetPeaks(scene->pair[i], p, tolerance, PetscMax(nodes[0], nodes[1]), &n, peak));
+    for (PetscInt k = 0; k < n; ++k) {
+      if (peak[k].last <= ABUT_PEAK_NOISE * residual * s.contact_length / peak[k].length) continue;
+      for (PetscInt side = 0; side < 2; ++side)
+        if (bodies[side] == body) PetscCall(AbutSceneMarkPeak_Private(body, sides[side], &peak[k], mark));
+    }
+    PetscCall(PetscFree(peak));
   }
-  PetscCall(PetscFree(peak));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -116,6 +116,9 @@ static PetscErrorCode AbutScenePrintLimit_Private(AbutScene scene)
   if (scene->tol > 0.) {
     what = "the estimate is still above its part of scene_tol";
     key  = "-scene_tol";
+  } else if (target > 0. && scene->discretisation <= target) {
+    what = "the estimate is at the target, and the largest pressure not resolved";
+    key  = "-adaptor_peak";
   } else if (target > 0.) {
     what = "the estimate is still above the target";
     key  = "-adaptor_target";

@@ -66,9 +66,14 @@ PetscErrorCode AbutSceneSetTolerance_Private(AbutScene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* As far as the scene is known: the adaptor comes after the first loop is made */
 PetscReal AbutSceneLoopTolerance_Private(AbutScene scene)
 {
-  return scene->tol > 0. ? ABUT_TOL_LOOP * PetscSqr(scene->tol) : 1e-8;
+  const PetscReal tolerance = scene->tol > 0. ? ABUT_TOL_LOOP * PetscSqr(scene->tol) : 1e-8;
+  PetscReal       peak      = 0.;
+
+  if (scene->adaptor) (void)AbutAdaptorGetPeak(scene->adaptor, &peak);
+  return peak > 0. ? PetscMin(tolerance, ABUT_SHARE_PEAK * peak) : tolerance;
 }
 
 /* Is the linear solver of a body one that has a tolerance, and is it the user's? */

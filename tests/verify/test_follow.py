@@ -75,6 +75,13 @@ def test_meshes_that_settle():
     assert abs(miss[1]) < abs(miss[0]) / 10, miss
 
 
+def test_meshes_that_have_no_edge_to_settle_at_are_solved_once():
+    punch = os.path.join(os.path.dirname(LAYERS), "..", "punch", "punch.yml")
+    orders = "-base_mesh_order 2 -punch_mesh_order 2"
+    once, twice = (run(punch, orders, f"-adaptor_settle {settle}", expect=None) for settle in ("no", "yes"))
+    assert once["cycles"] == twice["cycles"], (once["cycles"], twice["cycles"])
+
+
 def test_several_edges_on_one_side():
     """Two bumps, mirror images at x = 2: four edges on each side"""
     cycles, sides, pressures = follow("-mid_pair_gap", "1e-3*min((x-1.1)^2,(x-2.9)^2)+2e-4", "-upper_bc_top_u2 -0.6e-3", "-upper_mesh_cells 16,4 -lower_mesh_cells 12,3")

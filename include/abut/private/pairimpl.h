@@ -41,7 +41,8 @@ struct _p_AbutPair {
 PETSC_INTERN PetscErrorCode AbutPairCheckFacing_Private(AbutPair);
 PETSC_INTERN PetscErrorCode AbutPairGetDistance_Private(AbutPair, PetscReal *);
 PETSC_INTERN PetscReal      AbutPairPlace_Private(AbutPair, PetscInt);
-PETSC_INTERN PetscErrorCode AbutPairReadPressure_Private(AbutPair, const PetscReal[], PetscReal[]);
+PETSC_INTERN PetscErrorCode AbutPairGetReading_Private(AbutPair, const PetscReal[], PetscReal[]);
+PETSC_INTERN PetscErrorCode AbutPairGetLargest_Private(AbutPair, const PetscReal[], PetscReal *);
 PETSC_INTERN PetscBool      AbutPairEdgeBeyond_Private(AbutPair, const PetscReal[], const PetscReal[], PetscInt, PetscInt, PetscReal *);
 PETSC_INTERN PetscErrorCode AbutPairMortar_Private(AbutPair);
 PETSC_INTERN PetscErrorCode AbutPairMortarReset_Private(AbutPair);

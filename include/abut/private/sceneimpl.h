@@ -23,9 +23,8 @@ typedef struct {
 
 #define ABUT_TOUCH 1e-6 /* of the length of an element: what is that near touches it */
 
-/* Of -adaptor_peak, what the loop may leave: on two layers of order 3 that moves the largest pressure by a fifth of it, 0.3 of it by
-   several times as much, and more the smaller the cells */
-#define ABUT_SHARE_PEAK 0.1
+/* Of -adaptor_peak, what the loop may leave on a mesh, so that its noise hides no peak on elements of a tenth of the contact; see peaks.c */
+#define ABUT_SHARE_PEAK 0.003
 
 /* Where the seconds of a run went */
 typedef enum {
