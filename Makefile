@@ -12,7 +12,7 @@ endif
 
 # What config/setup.sh found: CC, PYTHON, PETSC, DEPS_CFLAGS, DEPS_LIBS, CHECK_CFLAGS, CHECK_LIBS, SLEPC_CFLAGS, SLEPC_LIBS. It rewrites the file
 # only when an answer changed, and GNU make then starts again with the new one. Only the goals below may install packages, and only as root on Debian.
-INSTALLING = run test test-long suite check asan setup
+INSTALLING = run test test-long suite fuzz check asan setup
 NO_SETUP   = clean deps deps-dev format lint
 ifneq ($(filter-out $(NO_SETUP),$(or $(MAKECMDGOALS),all)),)
 include $(B)/config.mk
@@ -96,6 +96,9 @@ suite: all $(CHECKS)
 	@$(PYTHON) tests/run.py --build $(B) --suite --long $(T)
 test-long: all $(CHECKS)
 	@$(PYTHON) tests/run.py --build $(B) --long $(T)
+# random scenes; one that goes wrong is printed with the command that repeats it
+fuzz: all
+	@$(PYTHON) tests/fuzz/scenes.py --abut $(B)/bin/abut
 asan: # without the leak checker, which reports 122 kB of Open MPI; PETSc finds our own leaks: -malloc_dump -objects_dump
 	ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=halt_on_error=1 $(MAKE) B=$(B)/asan CFLAGS="-g -O1 -fno-omit-frame-pointer -fsanitize=address,undefined" test
 
@@ -124,5 +127,5 @@ VERSION = $(shell sed -n 's/^version: *//p' CITATION.cff)
 clean:
 	rm -rf $(B) out
 FORCE:
-.PHONY: all run study-loops study-shares study-accuracy test test-long suite check asan setup deps deps-dev format lint install clean FORCE
+.PHONY: all run study-loops study-shares study-accuracy test test-long suite fuzz check asan setup deps deps-dev format lint install clean FORCE
 .DELETE_ON_ERROR:

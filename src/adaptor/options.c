@@ -74,9 +74,9 @@ static PetscErrorCode AbutAdaptorSetBodies_Private(AbutAdaptor adaptor, char lis
 
    The energy has nearly nothing of an error of the pressure far from the edges, so meshes that are made for the energy leave the cells
    below the largest pressure as they were. With `-adaptor_peak` the cells of both bodies that touch it are refined whatever their
-   indicators, as long as `AbutPairGetPeaks()` finds it unresolved and what the loop leaves is less: the loop runs to 0.003 of the key on all
-   meshes. What the edge of the contact does to the largest pressure is not in it: on two layers of order 3 and a target of 0.02 it stays
-   at 1e-5 whatever the key says. Corners, where one side ends and the other goes on, are left alone.
+   indicators, as long as `AbutPairGetPeaks()` finds it unresolved and what the loop leaves is less: the loop runs to 0.003 of the
+   key on all meshes. What the edge of the contact does to the largest pressure is not in it: on two layers of order 3 and a target
+   of 0.02 it stays at 1e-5 whatever the key says. Corners, where one side ends and the other goes on, are left alone.
 
    Limits: where contact reaches the end of the part that both sides share, as below the corner of a punch, there is no edge to follow.
    No type coarsens.

@@ -137,7 +137,8 @@ PetscErrorCode AbutBodySolve(AbutBody body, Vec contact)
    `KSP`; after a failure w may be zero.
 
    An iterative solver need not leave less than it left in `AbutBodySolve()`: its relative tolerance is half of that one's, in
-   proportion to the sizes of the right-hand sides, up to a ten thousandth, with which the loops still take no more sweeps than with exact answers.
+   proportion to the sizes of the right-hand sides, up to a ten thousandth, with which the loops still take no more sweeps than with
+   exact answers.
 
    With free modes, what the forces have along them is left out, and w has no part along them.
 

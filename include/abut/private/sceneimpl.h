@@ -23,7 +23,8 @@ typedef struct {
 
 #define ABUT_TOUCH 1e-6 /* of the length of an element: what is that near touches it */
 
-/* Of -adaptor_peak, what the loop may leave on a mesh, so that its noise hides no peak on elements of a tenth of the contact; see peaks.c */
+/* Of -adaptor_peak, what the loop may leave on a mesh, so that its noise hides no peak on elements of a tenth of the contact:
+   see peaks.c */
 #define ABUT_SHARE_PEAK 0.003
 
 /* Where the seconds of a run went */
