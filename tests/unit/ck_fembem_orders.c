@@ -324,8 +324,8 @@ static void HertzDisplacement(PetscReal young, PetscReal poisson, const PetscRea
   CkHertz(&hertz, x, u, s);
 }
 
-/* Displacements and forces on the sides of Hertz' box; its pressure is like a root at 1/2, a node */
-static PetscReal HertzError(PetscInt order, PetscInt n)
+/* Displacements and forces on the sides of Hertz' box, elements of order 1; its pressure is like a root at 1/2, a node */
+static PetscReal HertzError(PetscInt n)
 {
   const Field       field = {CK_YOUNG, CK_POISSON, HertzStress, HertzDisplacement};
   const PetscReal   x[8]  = {.5, -1., 1.3, -.4, .2, -1.7, .5, -.4};
@@ -336,14 +336,13 @@ static PetscReal HertzError(PetscInt order, PetscInt n)
   FembemStress      stress;
 
   BoundaryConditions("uuuuuuuutttttttt", held);
-  CkOk(BoundaryAllocate(4 * n, 1, order, &given));
+  CkOk(BoundaryAllocate(4 * n, 1, 1, &given));
   for (PetscInt i = 0; i < 4 * n; ++i) {
     const PetscReal at = 2. * (i % n) / n, end[4][2] = {{at, -2.}, {2., at - 2.}, {2. - at, 0.}, {0., -at}};
 
-    for (PetscInt d = 0; d < 2; ++d) given.x[2 * order * i + d] = end[i / n][d];
+    for (PetscInt d = 0; d < 2; ++d) given.x[2 * i + d] = end[i / n][d];
     given.side[i] = i / n;
   }
-  CkOk(BoundaryPlaceNodes(&given));
   BoundaryFill(&field, held, &given);
   CkOk(FembemBoundaryCreate(PETSC_COMM_SELF, &given, CK_YOUNG, CK_POISSON, &b));
   CkOk(FembemRecoverTractions(&b));
@@ -362,16 +361,13 @@ static PetscReal HertzError(PetscInt order, PetscInt n)
 
 START_TEST(the_stress_of_hertz_box_converges_at_least_with_order_2)
 {
-  static PetscReal least = PETSC_MAX_REAL;
-  PetscReal        error[4];
+  PetscReal error[4];
 
-  for (PetscInt k = 0; k < 4; ++k) error[k] = HertzError(_i, 16 << k);
-  for (PetscInt k = 1; k < 4; ++k) {
-    CkOk(PetscPrintf(PETSC_COMM_WORLD, "order %" PetscInt_FMT ": %.2e %.2e, order %.2f\n", _i, (double)error[k - 1], (double)error[k],
+  for (PetscInt k = 0; k < 4; ++k) error[k] = HertzError(16 << k);
+  for (PetscInt k = 1; k < 4; ++k)
+    CkOk(PetscPrintf(PETSC_COMM_WORLD, "Hertz' box: %.2e %.2e, order %.4f\n", (double)error[k - 1], (double)error[k],
                      (double)PetscLog2Real(error[k - 1] / error[k])));
-    least = PetscMin(least, PetscLog2Real(error[k - 1] / error[k]));
-  }
-  if (_i == 2) Say("V15", "2 less the least order of the stress inside Hertz' box, orders 1, 2", 2. - least, 0.);
+  Say("V15", "2 less the order of the stress inside Hertz' box, 16 to 128 a side", 2. - PetscLog2Real(error[0] / error[3]) / 3., 0.);
 }
 END_TEST
 
@@ -388,7 +384,7 @@ int main(int argc, char **argv)
   tcase_add_test(tests, legendre_s_functions_are_those_of_the_hypergeometric_series);
   tcase_add_loop_test(tests, fields_up_to_the_order_are_exact, 1, ABUT_ORDER_MAX + 1);
   tcase_add_loop_test(tests, the_stress_is_exact_up_to_the_boundary_and_a_number_on_it, 1, ABUT_ORDER_MAX + 1);
-  tcase_add_loop_test(tests, the_stress_of_hertz_box_converges_at_least_with_order_2, 1, 3);
+  tcase_add_test(tests, the_stress_of_hertz_box_converges_at_least_with_order_2);
   suite_add_tcase(suite, tests);
   status = CkRun(suite);
   PetscCall(AbutFinalize());
