@@ -28,8 +28,8 @@ START_TEST(linear_displacements_are_exact_on_every_mesh)
     {"ut", "tt", "tu", "tt"}, /* symmetry plane and smooth base, in kind */
     {"tu", "uu", "tt", "ut"}
   };
-  CkField   linear = {.at = CkLinear};
-  static PetscReal worst = 0.;
+  CkField          linear = {.at = CkLinear};
+  static PetscReal worst  = 0.;
   AbutBody         body;
   PetscReal        residual, error;
   PetscMPIInt      size;

@@ -13,13 +13,13 @@ enum {
    where it ends: a quarter of an order less in L2. */
 START_TEST(the_displacement_converges_with_its_order_and_one_more_and_the_stress_with_its_order)
 {
-  const PetscInt  order  = 1 + _i / 6;
-  const AbutShape shape  = (AbutShape)(_i / 3 % 2);
-  const int       how    = _i % 3;
-  CkField         smooth = {.at = CkSmooth, .order = order};
-  const PetscInt  n      = order > 2 ? 4 : 8;
-  AbutBody        body;
-  PetscReal       l2[3], energy[3];
+  const PetscInt   order  = 1 + _i / 6;
+  const AbutShape  shape  = (AbutShape)(_i / 3 % 2);
+  const int        how    = _i % 3;
+  CkField          smooth = {.at = CkSmooth, .order = order};
+  const PetscInt   n      = order > 2 ? 4 : 8;
+  AbutBody         body;
+  PetscReal        l2[3], energy[3];
   static PetscReal worst[2] = {0., 0.};
   PetscMPIInt      size;
 

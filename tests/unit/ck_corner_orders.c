@@ -121,11 +121,11 @@ static void Refine(AbutBody body, const char type[])
 START_TEST(adapted_meshes_have_the_order_of_their_elements)
 {
   static const char *const types[] = {"zz", "residual", "fembem"};
-  static const char *const what[]  = {"exponent of 1/N over p/2, meshes adapted by zz, off 1", "the same by residual", "the same by fembem"};
+  static const char *const what[] = {"exponent of 1/N over p/2, meshes adapted by zz, off 1", "the same by residual", "the same by fembem"};
   static PetscReal         worst[3];
-  const char *const        type    = types[_i % 3];
-  const AbutShape          shape   = (AbutShape)(_i / 3 % 2);
-  const PetscInt           order   = 1 + _i / 6;
+  const char *const        type  = types[_i % 3];
+  const AbutShape          shape = (AbutShape)(_i / 3 % 2);
+  const PetscInt           order = 1 + _i / 6;
   PetscReal                unknowns[MOST], energy[MOST], l2, slope;
   CkField                  field;
   AbutBody                 body = Corner(&field, shape, order, 2);

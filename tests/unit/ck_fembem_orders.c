@@ -245,8 +245,7 @@ START_TEST(fields_up_to_the_order_are_exact)
     if (degree <= _i) {
       ck_assert_double_lt(error, 1e-13);
       worst = PetscMax(worst, error);
-    }
-    else ck_assert_double_gt(error, 1e-7);
+    } else ck_assert_double_gt(error, 1e-7);
   }
   if (_i == ABUT_ORDER_MAX) Say("V15", "constant to cubic stresses inside, orders 1 to 4", worst, 1e-10);
 }
@@ -256,8 +255,8 @@ END_TEST
    corner, and beside elements 100 times as small; on an element there is a number, which none is at the nodes between them */
 START_TEST(the_stress_is_exact_up_to_the_boundary_and_a_number_on_it)
 {
-  const Field             field              = {2., .25, PolynomialStress, PolynomialDisplacement};
-  const PetscReal         lo[2]              = {0., 0.}, hi[2] = {1., 1.};
+  const Field             field = {2., .25, PolynomialStress, PolynomialDisplacement};
+  const PetscReal         lo[2] = {0., 0.}, hi[2] = {1., 1.};
   const PetscInt          m[4]               = {1, 100, 2, 5};
   const AbutConditionType given_traction[16] = {ABUT_TRACTION};
   static PetscReal        worst[2]           = {0., 0.};
@@ -283,8 +282,8 @@ START_TEST(the_stress_is_exact_up_to_the_boundary_and_a_number_on_it)
     CkOk(FembemStressEvaluate(stress, 4, x, s));
     for (PetscInt i = 0; i < 12; ++i) {
       if (i % 3 == 0) PolynomialStress(x + 2 * (i / 3), exact);
-      largest  = PetscMax(largest, PetscAbsReal(exact[i % 3]));
-      bad     += PetscIsInfOrNanReal(s[i]);
+      largest = PetscMax(largest, PetscAbsReal(exact[i % 3]));
+      bad += PetscIsInfOrNanReal(s[i]);
       worst[0] = PetscMax(worst[0], k > 2 ? 0. : PetscAbsReal(s[i] - exact[i % 3]) / largest);
       worst[1] = PetscMax(worst[1], PetscAbsReal(s[i] - exact[i % 3]) / largest);
     }
@@ -338,7 +337,12 @@ static PetscReal HertzError(PetscInt n)
   BoundaryConditions("uuuuuuuutttttttt", held);
   CkOk(BoundaryAllocate(4 * n, 1, 1, &given));
   for (PetscInt i = 0; i < 4 * n; ++i) {
-    const PetscReal at = 2. * (i % n) / n, end[4][2] = {{at, -2.}, {2., at - 2.}, {2. - at, 0.}, {0., -at}};
+    const PetscReal at = 2. * (i % n) / n, end[4][2] = {
+                                             {at,      -2.    },
+                                             {2.,      at - 2.},
+                                             {2. - at, 0.     },
+                                             {0.,      -at    }
+    };
 
     for (PetscInt d = 0; d < 2; ++d) given.x[2 * i + d] = end[i / n][d];
     given.side[i] = i / n;

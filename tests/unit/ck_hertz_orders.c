@@ -139,7 +139,7 @@ START_TEST(uniform_meshes_have_order_1_and_then_three_halves)
   };
   static PetscReal worst[2] = {0., 0.}; /* of orders, of errors */
   const AbutShape  shape    = (AbutShape)(_i / 4);
-  const PetscInt   order    = 1 + _i % 4, first = order == 1 ? 24 : 12;
+  const PetscInt   order = 1 + _i % 4, first = order == 1 ? 24 : 12;
   PetscReal        energy[2], lower[2];
 
   if (shape == ABUT_TRIANGLE && order > 3) return;

@@ -305,7 +305,8 @@ static void Say(const char displacement[], const char pressure[])
 START_TEST(an_even_pressure_is_exact_on_any_meshes)
 {
   CheckEvenPressure(_i / nvariants, _i % nvariants, "-mid_pair_gap 0.002 -mid_pair_theta 4 -snes_rtol 1e-12");
-  if (_i == npatches * nvariants - 1) Say("largest error of u over largest u, 24 pairs of meshes", "p off the even one, 24 pairs of meshes");
+  if (_i == npatches * nvariants - 1)
+    Say("largest error of u over largest u, 24 pairs of meshes", "p off the even one, 24 pairs of meshes");
 }
 END_TEST
 
