@@ -130,7 +130,7 @@ def fields(options, ranks, expect):
 
 
 def test_values_of_one_to_seven_ranks_differ_by_round_off():
-    """Also of more ranks than cells: the bodies have 1 and 2 at first. Of the iterative solvers' error the fields have some times as much"""
+    """Also of more ranks than cells: the bodies have 1 and 2 at first"""
     adapted = "-upper_mesh_cells 16,4 -adaptor_threshold 0.2 -estimator_type fembem -snes_type ddactive -snes_rtol 1e-11"
     solvers = "-lower_pc_type hypre -upper_pc_type hypre -lower_ksp_rtol 1e-12 -upper_ksp_rtol 1e-12"
     tiny = "-lower_mesh_cells 1,1 -upper_mesh_cells 1,1 -adaptor_bodies lower,upper -adaptor_max_level 2 -snes_type ddactive"

@@ -69,13 +69,13 @@ def test_the_force_converges_with_the_mesh():
 
 
 def test_an_adapted_mesh_has_the_error_of_a_uniform_one_with_twice_the_unknowns():
-    """The error is that of the strain energy, which for given displacements is least at the solution. No mesh of this order can do with less than a third
-    of the unknowns, says the best division of the stress's second derivatives into equal errors."""
+    """The error is that of the strain energy, which for given displacements is least at the solution. No mesh of this order can do with
+    less than a third of the unknowns, says the best division of the displacement's second derivatives into equal errors."""
     error = lambda record: math.sqrt(record["energy.strain"] / (EXACT["W1"]["value"] + EXACT["W2"]["value"]) - 1)
     uniform, parts, pressure, edge = solve(32, 32)[0], [], [], []
     for estimator in "fembem", "zz":
-        adapt = f"-adaptor_type doerfler -estimator_type {estimator} -adaptor_target 0.015 -adaptor_bodies lower,upper -adaptor_max_level 20"
-        record, nodes = solve(2, 2, 0, *adapt.split())
+        adapt = "-adaptor_type doerfler -adaptor_target 0.015 -adaptor_bodies lower,upper -adaptor_max_level 20"
+        record, nodes = solve(2, 2, 0, *adapt.split(), "-estimator_type", estimator)
         print(f"{record['unknowns']} unknowns, error {error(record):.5f}; uniform {uniform['unknowns']}, {error(uniform):.5f}")
         assert error(record) <= error(uniform), (error(record), error(uniform))
         parts += [record[f"body.{body}.unknowns"] / uniform[f"body.{body}.unknowns"] for body in ("lower", "upper")]
@@ -102,7 +102,8 @@ def test_contact_of_other_materials_follows_the_scaling_law():
 
 def test_the_error_of_the_penalty_is_proportional_to_it():
     """On one mesh, against the forces of another program for each c; then it is too small to see"""
-    force = {c: solve(16, 16, c, *QUADRATIC)[0]["pair.mid.force"] for c in (0, 0.5, 0.05, 0.005, 5e-4, *(5 * 10.0**-k for k in range(5, 11)))}
+    penalties = 0, 0.5, 0.05, 0.005, 5e-4, *(5 * 10.0**-k for k in range(5, 11))
+    force = {c: solve(16, 16, c, *QUADRATIC)[0]["pair.mid.force"] for c in penalties}
     lost = {c: 1 - force[c] / force[0] for c in (0.5, 0.05, 0.005, 5e-4)}
     exact = {c: 1 - CASES[str(c)]["P"]["value"] / FORCE for c in lost}
     print(lost, exact)

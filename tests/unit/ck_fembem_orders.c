@@ -301,7 +301,7 @@ START_TEST(the_stress_is_exact_up_to_the_boundary_and_a_number_on_it)
   CkOk(PetscPrintf(PETSC_COMM_WORLD, "order %" PetscInt_FMT ": up to a hundredth %.1e, up to 1e-8 %.1e, %" PetscInt_FMT " not finite\n", _i,
                    (double)worst[0], (double)worst[1], bad));
   if (_i < ABUT_ORDER_MAX) return;
-  Say("V15", "the same at a hundredth of an element from the boundary", worst[0], 1e-6);
+  Say("V15", "the same stresses up to a hundredth of an element from the boundary", worst[0], 1e-6);
   Say("H20", "error of the stress 1e-1 to 1e-8 h from edges, corners, 100:1 elements", worst[1], 1e-6);
   Say("H20", "values of the stress there, on edges, not finite", bad, 0.);
 }

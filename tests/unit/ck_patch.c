@@ -315,7 +315,7 @@ START_TEST(so_it_is_with_next_to_no_penalty)
   theta = 1e-6;
   CheckEvenPressure(_i, 0, "-mid_pair_gap 0.002 -mid_pair_theta 1e-6 -snes_rtol 1e-12");
   theta = THETA;
-  if (_i == npatches - 1) Say("the same with theta 1e-6 H/E", "p off the even one, theta 1e-6 H/E");
+  if (_i == npatches - 1) Say("largest error of u over largest u, theta 1e-6 H/E", "p off the even one, theta 1e-6 H/E");
 }
 END_TEST
 

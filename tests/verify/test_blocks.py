@@ -1,4 +1,5 @@
-"""Two blocks without a gap, pressed evenly: p = closure/(H1/E1' + H2/E2' + theta), stress and strain are the same everywhere, on any meshes.
+"""Two blocks without a gap, pressed evenly: p = closure/(H1/E1' + H2/E2' + theta), stress and strain are the same everywhere, on any
+meshes.
 
 Lengths in cm, stresses in MPa, the half model, per cm of depth.
 """
@@ -8,7 +9,10 @@ from abut import case, run
 
 YOUNG, NU, CLOSURE = 2.1e5, 0.3, 1e-3
 MEASURED = (0.5, 90.517241), (0.05, 112.299465), (0.005, 115.068493), (5e-4, 115.352925), (0, 115.384615)  # by c, to 9 digits
-MESHES = "-lower_mesh_cells 8,2 -upper_mesh_cells 6,2 -upper_mesh_shape triangle", "-lower_mesh_cells 3,2 -upper_mesh_cells 8,3 -lower_mesh_order 2"
+MESHES = (
+    "-lower_mesh_cells 8,2 -upper_mesh_cells 6,2 -upper_mesh_shape triangle",
+    "-lower_mesh_cells 3,2 -upper_mesh_cells 8,3 -lower_mesh_order 2",
+)
 
 
 def press(meshes, c, *options):
@@ -38,7 +42,7 @@ def test_a_closure_gives_the_pressure_of_the_formula():
                 displacement += [abs(record[f"probe.{name}.u1"] - u1) / CLOSURE, abs(record[f"probe.{name}.u2"] - u2) / CLOSURE]
     case("V01", "nodal pressures and force off the closed form, c 0.5 to 0", max(pressure), 1e-8)
     case("V01", "displacements off the linear ones, over the largest", max(displacement), 1e-10)
-    case("V01", "stresses off 0 and -p, over p", max(stress), 1e-8)
+    assert max(stress) < 1e-8, stress
 
 
 def test_a_pressure_on_a_block_that_only_the_other_one_holds_goes_through():
@@ -51,4 +55,4 @@ def test_a_pressure_on_a_block_that_only_the_other_one_holds_goes_through():
             for name, y in ("A", 0.7), ("B", 1.6 + c / (1 - NU**2)):  # the top moves by that of y = 2
                 displacement.append(abs(record[f"probe.{name}.u2"] / ((1 - NU**2) / YOUNG) + y) / 2)
     case("V02", "pressures off 1 under a block that floats", max(pressure), 1e-9)
-    case("V02", "displacements under it off the linear ones, over the largest", max(displacement), 1e-10)
+    assert max(displacement) <= 1e-10, displacement

@@ -1,16 +1,16 @@
-"""Receding contact: a layer of height 1 on a half-plane, pressed by a line force P; at first it touches everywhere, then nowhere but in |x| < c.
-The layer is held by the contact alone, along x by symmetry.
+"""Receding contact: a layer of height 1 on a half-plane, pressed by a line force P; at first it touches everywhere, then nowhere but in
+|x| < c. The layer is held by the contact alone, along x by symmetry.
 
-c and p(0) are from a program of its own that solves the integral equation of the layer without end on the half-plane, after L. M. Keer, J. Dundurs,
-K. C. Tsai, Problems involving a receding contact between a layer and a half space, J. Appl. Mech. 39 (1972), with Chebyshev's polynomials. Here the
-half-plane is a box of 60 heights, and P a pressure over a twentieth of a height.
+c and p(0) are from a program of its own that solves the integral equation of the layer without end on the half-plane, after L. M. Keer,
+J. Dundurs, K. C. Tsai, Problems involving a receding contact between a layer and a half space, J. Appl. Mech. 39 (1972), with Chebyshev's
+polynomials. Here the half-plane is a box of 60 heights, and P a pressure over a twentieth of a height on each side.
 """
 import functools
 
 from abut import case, run
 
 DEEP, WIDTH = 60, 0.05
-EDGES = {0.9: 3.30458, 0.5: 1.83630, 0: 1.3241654, -0.5: 1.03714, -0.9: 0.88696}  # by Dundurs' alpha, (E1' - E2')/(E1' + E2') of the layer 1
+EDGES = {0.9: 3.30458, 0.5: 1.83630, 0: 1.3241654, -0.5: 1.03714, -0.9: 0.88696}  # by (E1' - E2')/(E1' + E2'), of layer and half-plane
 MIDDLE = 0.71308  # p(0) h/P of equal materials
 
 
@@ -39,11 +39,12 @@ def test_the_contact_ends_where_the_integral_equation_says():
 def test_the_pressure_below_the_force_is_that_of_the_integral_equation():
     """The force is spread over a twentieth of a height, so that the pressure is a little lower"""
     record = press(0, order=3)
-    case("V08", "p(0) h/P of equal materials off it", abs(record["pair.mid.pressure_max"] / (2 * record["pair.mid.force"]) / MIDDLE - 1), 0.01)
+    middle = record["pair.mid.pressure_max"] / (2 * record["pair.mid.force"])
+    case("V08", "p(0) h/P of equal materials off it", abs(middle / MIDDLE - 1), 0.01)
 
 
 def test_the_contact_is_the_same_under_any_force():
-    """To the last digit under 1024 P, whose round-off is the same; that under 1000 P is another, and the contact of a layer that nothing else holds feels it"""
+    """To the last digit under 1024 P, whose round-off is the same; that under 1000 P is another, which a layer that floats feels"""
     edge, binary, decimal = (press(0, P)["pair.mid.contact_edge"] for P in (1.0, 1024.0, 1000.0))
     case("V08", "c under 1024 P off that under P", abs(binary / edge - 1), 1e-12)
     assert abs(decimal / edge - 1) < 1e-8, (decimal, edge)
