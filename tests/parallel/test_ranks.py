@@ -135,9 +135,9 @@ def test_values_of_one_to_seven_ranks_differ_by_round_off():
     solvers = "-lower_pc_type hypre -upper_pc_type hypre -lower_ksp_rtol 1e-12 -upper_ksp_rtol 1e-12"
     tiny = "-lower_mesh_cells 1,1 -upper_mesh_cells 1,1 -adaptor_bodies lower,upper -adaptor_max_level 2 -snes_type ddactive"
     force, moved, eta, others = 0, 0, 0, 0
-    for options, expect in ((adapted, solvers), 0), ((tiny,), 3):
+    for options, expect, several in ((adapted, solvers), 0, (2, 3, 4, 7)), ((tiny,), 3, (3, 7)):
         record, meshes = fields(options, 1, expect)
-        for ranks in 2, 3, 4, 7:
+        for ranks in several:
             again, same = fields(options, ranks, expect)
             others += [record[key] != again[key] for key in ("sweeps", "cycles", "unknowns")] != 3 * [False] or meshes.keys() != same.keys()
             for key in "force", "pressure_max":
@@ -148,7 +148,7 @@ def test_values_of_one_to_seven_ranks_differ_by_round_off():
     case("H24", "P, p0 beyond one unit of their tenth digit, 1 against 2, 3, 4, 7 ranks", force, 1e-10)
     case("H24", "indicators of all cells of all meshes, over the largest", eta, 1e-10)
     case("H24", "displacements of all meshes, over the largest", moved, 1e-10)
-    case("H24", "of 8 runs those with other sweeps, cycles or meshes", others, 0)
+    case("H24", "of 6 runs those with other sweeps, cycles or meshes", others, 0)
 
 
 def test_accelerated_loops_and_iterative_solvers():

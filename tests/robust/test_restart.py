@@ -56,12 +56,12 @@ def test_on_any_number_of_ranks():
 
 
 def test_fields_that_went_on_are_those_of_the_whole_run():
-    """To the last bit on one rank, to round-off on others"""
+    """To the last bit on one rank, to round-off on three"""
     bits, keys, off = 0, 0, 0
     for scene in FOLLOWED, TRIANGLES:
         with tempfile.TemporaryDirectory() as folder:
             whole = run(*scene, f"-checkpoint {folder}/last -output {folder}/whole.vtu")
-            for ranks in 1, 2, 3, 4:
+            for ranks in 1, 3:
                 on = run(*scene, f"-restart {folder}/last -output {folder}/on{ranks}.vtu", ranks=ranks)
                 for file in os.listdir(folder):
                     if not file.startswith(f"on{ranks}_"):
@@ -76,7 +76,7 @@ def test_fields_that_went_on_are_those_of_the_whole_run():
                 for key in "force", "pressure_max":
                     assert abs(on[f"pair.mid.{key}"] / whole[f"pair.mid.{key}"] - 1) < 1e-9, key
     case("H23", "fields and keys of the record that are not the same to the last digit", bits + keys, 0)
-    case("H23", "displacements on 2, 3, 4 ranks from those of one, same meshes, over the largest", off, 1e-12)
+    case("H23", "displacements on 3 ranks from those of one, same meshes, over the largest", off, 1e-12)
 
 
 def test_every_other_cycle():
