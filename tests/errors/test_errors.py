@@ -1,7 +1,7 @@
 """Bad input ends in one line on standard error and exit status 1, before any mesh is made, and no file is touched. golden.txt has the lines."""
-import concurrent.futures, os, random, re, shlex, tempfile, unittest
+import concurrent.futures, os, random, re, shlex, tempfile, time, unittest
 
-from abut import BUILD, LAYERS, PROGRAM, execute
+from abut import BUILD, LAYERS, PROGRAM, case, execute
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 LINE = "abut: "
@@ -68,15 +68,26 @@ def complain(words, expected, ranks=1):
 
 
 def check(cases, ranks=1):
+    """The seconds of the slowest"""
+
+    def timed(words, expected):
+        start = time.time()
+        return complain(words, expected, ranks), time.time() - start
+
     with concurrent.futures.ThreadPoolExecutor(2 if ranks == 1 else 1) as pool:
-        complaints = [text for text in pool.map(lambda case: complain(*case, ranks), cases) if text]
+        complaints, seconds = zip(*pool.map(lambda one: timed(*one), cases))
+    complaints = [text for text in complaints if text]
+    print(*complaints[:5], sep="\n")
+    if ranks == 1:
+        case("H26", f"of {len(cases)} bad inputs those without status 1 and their one line", len(complaints), 0)
     assert not complaints, f"{len(complaints)} of {len(cases)}:\n" + "\n".join(complaints[:5])
+    return max(seconds)
 
 
 def test_every_bad_input_ends_in_its_line():
     cases = list(read_golden())
     assert len(cases) > 100
-    check(cases)
+    case("H26", "seconds to the end of the slowest of them", check(cases), 5)
 
 
 def test_on_two_ranks_it_is_still_one_line():

@@ -3,9 +3,9 @@
 Round-off differs, so keys that are round-off themselves are left out, and the residual of the loop, a difference of almost equal traces,
 has fewer digits.
 """
-import os, tempfile, xml.etree.ElementTree as xml
+import math, os, tempfile, xml.etree.ElementTree as xml
 
-from abut import LAYERS, read_csv, run
+from abut import LAYERS, case, read_csv, run
 
 CHEAP = "-mid_pair_penalty 0.5 -snes_ddneumann_gamma 0"  # a tenth of the sweeps
 TIMES = ("time.", "memory.")
@@ -98,6 +98,57 @@ def test_ranks_without_a_cell():
     for estimator in ("fembem", "zz"):
         record = check_ranks(*tiny, f"-adaptor_bodies lower,upper -adaptor_max_level 3 -estimator_type {estimator}", expect=3)
         assert record["body.lower.cells"] > 8 and record["body.upper.cells"] > 8, estimator
+
+
+def read_values(path):
+    """Displacements of the points and, if there are any, indicators of the cells of a VTU file, by where they are, with all digits"""
+    data = {array.get("Name"): numbers(array) for array in xml.parse(path).getroot().iter("DataArray")}
+    x, u, corner = data["vertices"], data["displacement"], data["connectivity"]
+    points = [(f"{x[i]:.9g}", f"{x[i + 1]:.9g}") for i in range(0, len(x), 3)]
+    moved = {(point, d): u[3 * i + d] for i, point in enumerate(points) for d in range(2)}
+    ends = [int(end) for end in data["offsets"]]
+    cells = [tuple(sorted(points[int(k)] for k in corner[a:b])) for a, b in zip([0] + ends, ends)]
+    return moved, dict(zip(cells, data.get("eta", [])))
+
+
+def farthest(one, other):
+    """The largest difference of two fields on the same points, over the largest value"""
+    assert one.keys() == other.keys()
+    return max((abs(one[at] - other[at]) for at in one), default=0) / max(map(abs, one.values()), default=1)
+
+
+def digits_off(one, other):
+    """Relative difference beyond one unit of the tenth digit, which is the last of the record"""
+    return max(0, abs(one - other) - 1.01 * 10.0 ** (math.floor(math.log10(one)) - 9)) / one
+
+
+def fields(options, ranks, expect):
+    """Record, and for each mesh displacements and indicators"""
+    with tempfile.TemporaryDirectory() as folder:
+        record = run(LAYERS, *options, f"-output {folder}/fields.vtu", ranks=ranks, expect=expect, limit=100)
+        return record, {name: read_values(f"{folder}/{name}") for name in sorted(os.listdir(folder)) if name.endswith(".vtu")}
+
+
+def test_values_of_one_to_seven_ranks_differ_by_round_off():
+    """Also of more ranks than cells: the bodies have 1 and 2 at first"""
+    adapted = "-upper_mesh_cells 16,4 -adaptor_threshold 0.2 -estimator_type fembem -snes_type ddactive -snes_rtol 1e-11"
+    solvers = "-lower_pc_type hypre -upper_pc_type hypre -lower_ksp_rtol 1e-12 -upper_ksp_rtol 1e-12"
+    tiny = "-lower_mesh_cells 1,1 -upper_mesh_cells 1,1 -adaptor_bodies lower,upper -adaptor_max_level 2 -snes_type ddactive"
+    force, moved, eta, others = 0, 0, 0, 0
+    for options, expect, several in ((adapted, solvers), 0, (2, 3, 4, 7)), ((tiny,), 3, (3, 7)):
+        record, meshes = fields(options, 1, expect)
+        for ranks in several:
+            again, same = fields(options, ranks, expect)
+            others += [record[key] != again[key] for key in ("sweeps", "cycles", "unknowns")] != 3 * [False] or meshes.keys() != same.keys()
+            for key in "force", "pressure_max":
+                force = max(force, digits_off(record[f"pair.mid.{key}"], again[f"pair.mid.{key}"]))
+            for name in meshes:
+                moved = max(moved, farthest(meshes[name][0], same[name][0]))
+                eta = max(eta, farthest(meshes[name][1], same[name][1]))
+    case("H24", "P, p0 beyond one unit of their tenth digit, 1 against 2, 3, 4, 7 ranks", force, 1e-10)
+    case("H24", "indicators of all cells of all meshes, over the largest", eta, 1e-10)
+    case("H24", "displacements of all meshes, over the largest", moved, 1e-10)
+    case("H24", "of 6 runs those with other sweeps, cycles or meshes", others, 0)
 
 
 def test_accelerated_loops_and_iterative_solvers():

@@ -3,9 +3,9 @@ reference.json there.
 
 Lengths in cm, stresses in MPa, the half model, per cm of depth; both bodies bilinear, h is one over the cells per cm.
 """
-import csv, functools, json, os, tempfile, unittest
+import csv, functools, json, math, os, tempfile, unittest
 
-from abut import ROOT, run, run_error
+from abut import ROOT, case, run, run_error
 
 SCENE = """-scene_bodies lower,upper -scene_pairs mid -snes_rtol 1e-10
 -lower_mesh_box 0,0,4,1 -lower_material_young 2.1e5 -lower_material_poisson 0.3 -lower_bc_left_u1 0 -lower_bc_bottom_u2 0
@@ -13,7 +13,8 @@ SCENE = """-scene_bodies lower,upper -scene_pairs mid -snes_rtol 1e-10
 -mid_pair_bodies upper,lower -mid_pair_sides bottom,top -mid_pair_gap 1e-3*x^2"""
 
 with open(os.path.join(ROOT, "examples", "layers", "reference.json")) as f:
-    EXACT = json.load(f)["cases"]["0"]
+    CASES = json.load(f)["cases"]
+EXACT = CASES["0"]
 FORCE, MIDDLE, EDGE = (EXACT[key]["value"] for key in ("P", "p0", "a"))
 
 
@@ -65,6 +66,52 @@ def test_the_force_converges_with_the_mesh():
     error = [relative(solve(n, n)[0]["pair.mid.force"], FORCE) for n in (8, 16, 32)]
     print(*(f"{value:.1e}" for value in error))
     assert all(value < 2 * (1 / n) ** 2 for value, n in zip(error, (8, 16, 32))), error
+
+
+def test_an_adapted_mesh_has_the_error_of_a_uniform_one_with_twice_the_unknowns():
+    """The error is that of the strain energy, which for given displacements is least at the solution. No mesh of this order can do with
+    less than a third of the unknowns, says the best division of the displacement's second derivatives into equal errors."""
+    error = lambda record: math.sqrt(record["energy.strain"] / (EXACT["W1"]["value"] + EXACT["W2"]["value"]) - 1)
+    uniform, parts, pressure, edge = solve(32, 32)[0], [], [], []
+    for estimator in "fembem", "zz":
+        adapt = "-adaptor_type doerfler -adaptor_target 0.015 -adaptor_bodies lower,upper -adaptor_max_level 20"
+        record, nodes = solve(2, 2, 0, *adapt.split(), "-estimator_type", estimator)
+        print(f"{record['unknowns']} unknowns, error {error(record):.5f}; uniform {uniform['unknowns']}, {error(uniform):.5f}")
+        assert error(record) <= error(uniform), (error(record), error(uniform))
+        parts += [record[f"body.{body}.unknowns"] / uniform[f"body.{body}.unknowns"] for body in ("lower", "upper")]
+        pressure += [relative(record["pair.mid.force"], FORCE), 0.1 * relative(nodes[0][1], MIDDLE)]
+        edge.append(abs(record["pair.mid.contact_edge"] - EDGE) / min(record[f"body.{body}.hmin"] for body in ("lower", "upper")))
+    case("V04", "unknowns of a body, fembem and zz, over those of a uniform mesh as good", max(parts), 0.5)
+    case("V04", "P, and a tenth of p0, off on these adapted meshes", max(pressure), 1e-3)
+    case("V04", "a off, over the local h", max(edge), 1)
+
+
+QUADRATIC = "-lower_mesh_order 2 -upper_mesh_order 2".split()
+
+
+def test_contact_of_other_materials_follows_the_scaling_law():
+    """P and p0 are proportional to 1/(1/E1' + 1/E2'), a is the same. Values of the integral equation of two layers without end"""
+    off = []
+    for contrast, P, p0 in (10, 230.13438, 302.18627), (100, 250.6414, 329.11376), (1e8, 253.1478, 332.4049):
+        law = 2 / (1 + 1 / contrast)
+        assert relative(law * FORCE, P) < 1e-6 and relative(law * MIDDLE, p0) < 1e-6
+        record, nodes = solve(16, 16, 0, "-upper_material_young", 2.1e5 * contrast, *QUADRATIC)
+        off += [relative(record["pair.mid.force"], P), relative(nodes[0][1], p0), relative(record["pair.mid.contact_edge"], EDGE)]
+    case("V04", "P, p0, a off the scaling law, E2/E1 10, 100, 1e8", max(off), 1e-3)
+
+
+def test_the_error_of_the_penalty_is_proportional_to_it():
+    """On one mesh, against the forces of another program for each c; then it is too small to see"""
+    penalties = 0, 0.5, 0.05, 0.005, 5e-4, 5e-5, 5e-7, 5e-10
+    force = {c: solve(16, 16, c, *QUADRATIC)[0]["pair.mid.force"] for c in penalties}
+    lost = {c: 1 - force[c] / force[0] for c in (0.5, 0.05, 0.005, 5e-4)}
+    exact = {c: 1 - CASES[str(c)]["P"]["value"] / FORCE for c in lost}
+    print(lost, exact)
+    case("V05", "part of the force lost to the penalty off the reference, c 0.5 to 5e-4", max(abs(lost[c] - exact[c]) for c in lost), 2e-4)
+    case("V05", "its exponent in theta, at c 5e-4", math.log10(lost[0.005] / lost[5e-4]), 1.01, 0.99)
+    small = [force[c] for c in sorted(force) if c < 1e-4]
+    case("V05", "force off that without penalty, c 5e-5 to 5e-10", max(relative(P, small[0]) for P in small), 2e-4)
+    assert small == sorted(small, reverse=True), small
 
 
 def test_exact_contact_does_not_penetrate_and_does_not_pull():

@@ -4,7 +4,7 @@ Lengths in cm, stresses in MPa, the half model, per cm of depth; bilinear, n cel
 """
 import functools, os, subprocess, sys, tempfile
 
-from abut import ROOT, run, run_error
+from abut import ROOT, case, run, run_error
 
 STACK = os.path.join(ROOT, "examples", "stack")
 sys.path.insert(0, STACK)
@@ -94,7 +94,8 @@ def test_a_thin_layer_in_the_middle_is_half_of_it_on_a_support():
         half = solve(text, "-layer1_mesh_cells", "64,4")
         both = [*forces(whole), *forces(half)]
         print(f"c = {penalty}:", both, "sweeps", whole["sweeps"], half["sweeps"])
-        assert len(both) == 3 and same(both, 1e-8), both
+        assert len(both) == 3
+        case("V14", f"forces of both sides and of the half off each other, c {penalty}", max(both) / min(both) - 1, 1e-8)
         for key in "pressure_max", "contact_edge", "active":
             assert same([whole[f"pair.between1.{key}"], whole[f"pair.between2.{key}"], half[f"pair.between1.{key}"]], 1e-7), key
 

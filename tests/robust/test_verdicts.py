@@ -1,7 +1,7 @@
 """Every way in which a loop can fail has its name, exit status 2, and leaves its best answer. Two layers, h = 1/n; see test_gamma.py."""
 import csv, math, os, tempfile
 
-from abut import run
+from abut import case, run
 from test_gamma import NPC, exact_force, layers, near
 
 
@@ -76,10 +76,15 @@ def test_max_iterations():
 
 
 def test_a_linear_solver_that_may_take_1_iteration_in_one_body():
-    for body in "lower", "upper":
-        for loop in LOOPS:
-            fails("linear_solver", layers(4), loop, f"-{body}_pc_type jacobi -{body}_ksp_type cg -{body}_ksp_max_it 1")
-    fails("linear_solver", layers(4), LOOPS[1], "-lower_pc_type jacobi -lower_ksp_type cg -lower_ksp_max_it 1", ranks=2)
+    ways = [(body, loop, 1) for body in ("lower", "upper") for loop in LOOPS] + [("lower", LOOPS[1], 2)]
+    other = 0
+    for body, loop, ranks in ways:
+        try:
+            fails("linear_solver", layers(4), loop, f"-{body}_pc_type jacobi -{body}_ksp_type cg -{body}_ksp_max_it 1", ranks=ranks)
+        except AssertionError as error:
+            other += 1
+            print(error)
+    case("H28", f"of {len(ways)} runs with ksp_max_it 1 those without linear_solver as verdict", other, 0)
 
 
 def test_an_answer_that_does_not_agree_with_itself_is_named_with_the_check():

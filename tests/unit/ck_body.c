@@ -28,9 +28,11 @@ START_TEST(linear_displacements_are_exact_on_every_mesh)
     {"ut", "tt", "tu", "tt"}, /* symmetry plane and smooth base, in kind */
     {"tu", "uu", "tt", "ut"}
   };
-  CkField   linear = {.at = CkLinear};
-  AbutBody  body;
-  PetscReal residual;
+  CkField          linear = {.at = CkLinear};
+  static PetscReal worst  = 0.;
+  AbutBody         body;
+  PetscReal        residual, error;
+  PetscMPIInt      size;
 
   for (PetscInt k = 0; k < 3; ++k) {
     const char *const *c = conditions[k];
@@ -38,13 +40,17 @@ START_TEST(linear_displacements_are_exact_on_every_mesh)
     body = Make(PETSC_COMM_WORLD, &linear, _i % NMESHES, (AbutShape)(_i / NMESHES));
     CkGiveAll(body, &linear, c[0], c[1], c[2], c[3]);
     CkOk(AbutBodySolve(body, NULL));
-    ck_assert_double_lt(CkNodalError(body, &linear), 1e-12);
+    error = CkNodalError(body, &linear);
+    ck_assert_double_lt(error, 1e-12);
+    worst = PetscMax(worst, error);
     ck_assert_double_lt(CkStressError(body, &linear),
                         _i % NMESHES == POINT ? 1e-10 : 1e-12); /* differences over cells a thousand times smaller */
     CkOk(AbutBodyGetLinearResidual(body, &residual));
     ck_assert_double_lt(residual, 1e-12);
     CkOk(AbutBodyDestroy(&body));
   }
+  CkOk(MPI_Comm_size(PETSC_COMM_WORLD, &size));
+  if (_i == 2 * NMESHES - 1 && size == 1) CkCase("V13", "linear u on quads and triangles with hanging nodes", worst, 1e-12);
 }
 END_TEST
 

@@ -13,13 +13,15 @@ enum {
    where it ends: a quarter of an order less in L2. */
 START_TEST(the_displacement_converges_with_its_order_and_one_more_and_the_stress_with_its_order)
 {
-  const PetscInt  order  = 1 + _i / 6;
-  const AbutShape shape  = (AbutShape)(_i / 3 % 2);
-  const int       how    = _i % 3;
-  CkField         smooth = {.at = CkSmooth, .order = order};
-  const PetscInt  n      = order > 2 ? 4 : 8;
-  AbutBody        body;
-  PetscReal       l2[3], energy[3];
+  const PetscInt   order  = 1 + _i / 6;
+  const AbutShape  shape  = (AbutShape)(_i / 3 % 2);
+  const int        how    = _i % 3;
+  CkField          smooth = {.at = CkSmooth, .order = order};
+  const PetscInt   n      = order > 2 ? 4 : 8;
+  AbutBody         body;
+  PetscReal        l2[3], energy[3];
+  static PetscReal worst[2] = {0., 0.};
+  PetscMPIInt      size;
 
   if (shape == ABUT_TRIANGLE && order > 3) return;
   body = CkBodyOn(PETSC_COMM_WORLD, "body", &smooth, 0., 0., 2., 1., 2 * n, n, shape);
@@ -33,6 +35,13 @@ START_TEST(the_displacement_converges_with_its_order_and_one_more_and_the_stress
   }
   ck_assert_double_eq_tol(PetscLog2Real(l2[1] / l2[2]), order + 1., order == 1 ? 0.03 : 0.1);
   ck_assert_double_eq_tol(PetscLog2Real(energy[1] / energy[2]), (double)order, order == 1 ? 0.015 : 0.1);
+  worst[0] = PetscMax(worst[0], PetscAbsReal(PetscLog2Real(l2[1] / l2[2]) - order - 1.));
+  worst[1] = PetscMax(worst[1], PetscAbsReal(PetscLog2Real(energy[1] / energy[2]) - order));
+  CkOk(MPI_Comm_size(PETSC_COMM_WORLD, &size));
+  if (_i == 20 && size == 1) {
+    CkCase("V13", "order in L2 off p + 1, P1 to P3, Q1 to Q4, hanging nodes", worst[0], 0.1);
+    CkCase("V13", "order in energy off p, the same meshes", worst[1], 0.1);
+  }
   ck_assert_double_lt(l2[2], order == 1 ? 5e-4 : 3e-5);
   ck_assert_double_lt(energy[2], order == 1 ? 1.2e-2 : 1e-3);
   CkOk(AbutBodyDestroy(&body));

@@ -67,9 +67,10 @@ END_TEST
 
 START_TEST(uniform_meshes_have_the_order_of_the_corner)
 {
-  const AbutShape shape = (AbutShape)(_i / 4);
-  const PetscInt  order = 1 + _i % 4;
-  PetscReal       l2, energy[2];
+  static PetscReal worst = 0.;
+  const AbutShape  shape = (AbutShape)(_i / 4);
+  const PetscInt   order = 1 + _i % 4;
+  PetscReal        l2, energy[2];
 
   if (shape == ABUT_TRIANGLE && order > 3) return;
   for (PetscInt k = 0; k < 2; ++k) {
@@ -81,7 +82,9 @@ START_TEST(uniform_meshes_have_the_order_of_the_corner)
   }
   printf("%s of order %d: %.3e %.3e, order %.3f\n", shape ? "triangles" : "quads", (int)order, (double)energy[0], (double)energy[1],
          (double)PetscLog2Real(energy[0] / energy[1]));
-  ck_assert_double_eq_tol(PetscLog2Real(energy[0] / energy[1]), LAMBDA, 0.03);
+  worst = PetscMax(worst, PetscAbsReal(PetscLog2Real(energy[0] / energy[1]) - LAMBDA));
+  ck_assert_double_le(worst, 0.03);
+  if (_i == 6) CkCase("V10", "order in h of uniform meshes, whatever the elements, off 0.5445", worst, 0.03);
 }
 END_TEST
 
@@ -118,9 +121,11 @@ static void Refine(AbutBody body, const char type[])
 START_TEST(adapted_meshes_have_the_order_of_their_elements)
 {
   static const char *const types[] = {"zz", "residual", "fembem"};
-  const char *const        type    = types[_i % 3];
-  const AbutShape          shape   = (AbutShape)(_i / 3 % 2);
-  const PetscInt           order   = 1 + _i / 6;
+  static const char *const what[] = {"exponent of 1/N over p/2, meshes adapted by zz, off 1", "the same by residual", "the same by fembem"};
+  static PetscReal         worst[3];
+  const char *const        type  = types[_i % 3];
+  const AbutShape          shape = (AbutShape)(_i / 3 % 2);
+  const PetscInt           order = 1 + _i / 6;
   PetscReal                unknowns[MOST], energy[MOST], l2, slope;
   CkField                  field;
   AbutBody                 body = Corner(&field, shape, order, 2);
@@ -137,7 +142,9 @@ START_TEST(adapted_meshes_have_the_order_of_their_elements)
   slope = PetscLogReal(energy[n - 1] / energy[first]) / PetscLogReal(unknowns[n - 1] / unknowns[first]);
   printf("%s of order %d, %s: %g to %g unknowns, %.2e to %.2e, N^%.3f\n", shape ? "triangles" : "quads", (int)order, type,
          (double)unknowns[first], (double)unknowns[n - 1], (double)energy[first], (double)energy[n - 1], (double)slope);
-  ck_assert_double_eq_tol(slope, -0.5 * order, 0.06 * order);
+  worst[_i % 3] = PetscMax(worst[_i % 3], PetscAbsReal(slope / (-0.5 * order) - 1.));
+  ck_assert_double_le(worst[_i % 3], 0.12);
+  if (_i > 8) CkCase("V10", what[_i % 3], worst[_i % 3], 0.12);
   CkOk(AbutBodyDestroy(&body));
 }
 END_TEST

@@ -149,6 +149,8 @@ START_TEST(estimates_are_near_the_errors_and_rank_the_cells)
   const char *const type     = types[_i % 3];
   const PetscInt    order    = 1 + _i / 3;
   const PetscBool   residual = (PetscBool)!strcmp(type, "residual"); /* knows the error up to a factor */
+  static PetscReal  rank[3], worst[2];                               /* of the Hertz box */
+  char              what[96];
 
   for (int which = 0; which < 4; ++which) {
     const PetscBool edge  = (PetscBool)(which % 2);
@@ -162,11 +164,20 @@ START_TEST(estimates_are_near_the_errors_and_rank_the_cells)
       low  = PetscMin(low, table.effectivity[k]);
       high = PetscMax(high, table.effectivity[k]);
       ck_assert_double_ge(table.spearman[k], 0.8);
+      if (edge) rank[_i % 3] = PetscMax(rank[_i % 3], 1. - table.spearman[k]);
+      if (edge) worst[0] = PetscMax(worst[0], PetscMax(table.effectivity[k], 1. / table.effectivity[k]));
     }
+    if (edge) worst[1] = PetscMax(worst[1], high / low);
     ck_assert_double_lt(high / low, 1.3);
     ck_assert_double_ge(low, residual ? 0.5 : 0.75);
     ck_assert_double_le(high, residual ? 2. : above);
   }
+  if (order < 3) return;
+  CkOk(PetscSNPrintf(what, sizeof(what), "%s, order 1 to 3: 1 less the rank correlation with errors", type));
+  CkCase("V16", what, rank[_i % 3], 0.2);
+  if (_i < 8) return;
+  CkCase("V16", "all three: estimate over error, or error over estimate", worst[0], 3.);
+  CkCase("V16", "its largest value over the least, last three meshes", worst[1], 1.3);
 }
 END_TEST
 

@@ -181,9 +181,10 @@ START_TEST(a_rigid_motion_has_no_stress)
 {
   const PetscReal lo[2] = {-1., 0.}, hi[2] = {1., 1.}, x[4] = {.1, .3, .99, 1e-3};
   const PetscInt  m[4] = {5, 3, 9, 4};
-  PetscReal       s[6];
+  PetscReal       s[6], worst = 0.;
   AbutBoundary    given;
   FembemBoundary  b;
+  PetscMPIInt     size;
 
   CkOk(BoundaryCreateBox(lo, hi, m, PETSC_FALSE, 1, &given));
   for (PetscInt i = 0; i < given.n; ++i) {
@@ -192,7 +193,12 @@ START_TEST(a_rigid_motion_has_no_stress)
   }
   CkOk(FembemBoundaryCreate(PETSC_COMM_SELF, &given, 1., 0.3, &b));
   Evaluate(&b, 0., 2, x, s);
-  for (PetscInt i = 0; i < 6; ++i) ck_assert_double_eq_tol(s[i], 0., 1e-14);
+  for (PetscInt i = 0; i < 6; ++i) {
+    ck_assert_double_eq_tol(s[i], 0., 1e-14);
+    worst = PetscMax(worst, PetscAbsReal(s[i]));
+  }
+  CkOk(MPI_Comm_size(PETSC_COMM_WORLD, &size));
+  if (size == 1) CkCase("V15", "stress of a rigid motion of size 1, E 1", worst, 1e-12);
   CkOk(FembemBoundaryDestroy(&b));
   CkOk(BoundaryFree(&given));
 }

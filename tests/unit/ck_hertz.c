@@ -148,7 +148,8 @@ START_TEST(stress_and_pressure_converge_with_order_1)
     {NAN, 0.0619, 0.03144},
     {NAN, 0.1142, 0.0589 }
   };
-  Errors e[MESHES];
+  static PetscReal worst = 0.;
+  Errors           e[MESHES];
 
   for (PetscInt k = 0; k < MESHES; ++k) e[k] = Solve(12 << k, 12 << k, (AbutShape)_i, PETSC_FALSE);
   printf("%s   energy lower, known, upper     pressure  force      edge     sweeps\n", _i ? "triangles" : "quads    ");
@@ -162,11 +163,13 @@ START_TEST(stress_and_pressure_converge_with_order_1)
            (double)Order(e[k - 1].energy[1], e[k].energy[1]), (double)Order(e[k - 1].pressure, e[k].pressure));
     ck_assert_double_eq_tol(e[k].energy[0], known[_i][k], 0.02 * known[_i][k]);
     for (PetscInt b = 0; b < 2; ++b) ck_assert_double_eq_tol(Order(e[k - 1].energy[b], e[k].energy[b]), 1., bound);
-    ck_assert_double_eq_tol(Order(e[k - 1].pressure, e[k].pressure), 1., 0.1);
+    worst = PetscMax(worst, PetscAbsReal(Order(e[k - 1].pressure, e[k].pressure) - 1.));
+    ck_assert_double_le(worst, 0.1);
     /* the mean of the gap over a dual function is h^2/(6 R) less than its value at the node, so that the force is too large by order 2 */
     ck_assert_double_lt(PetscAbsReal(e[k].force), PetscSqr(h));
     ck_assert_double_eq_tol(e[k].edge, A, 1e-3); /* a is a node */
   }
+  if (_i == ABUT_TRIANGLE) CkCase("V03", "order of the pressure in L2, order 1, quads and triangles, off 1", worst, 0.1);
   if (_i == ABUT_QUAD) /* the boxes and their meshes are mirror images */
     for (PetscInt k = 0; k < MESHES; ++k) ck_assert_double_eq_tol(e[k].energy[0], e[k].energy[1], 1e-6);
 }

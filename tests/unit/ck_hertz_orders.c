@@ -137,17 +137,24 @@ START_TEST(uniform_meshes_have_order_1_and_then_three_halves)
     {{0.0619, 0.03144}, {0.01709, 0.006106}},
     {{0.1142, 0.0589},  {0.02865, 0.01019} }
   };
-  const AbutShape shape = (AbutShape)(_i / 4);
-  const PetscInt  order = 1 + _i % 4, first = order == 1 ? 24 : 12;
-  PetscReal       energy[2], lower[2];
+  static PetscReal worst[2] = {0., 0.}; /* of orders, of errors */
+  const AbutShape  shape    = (AbutShape)(_i / 4);
+  const PetscInt   order = 1 + _i % 4, first = order == 1 ? 24 : 12;
+  PetscReal        energy[2], lower[2];
 
   if (shape == ABUT_TRIANGLE && order > 3) return;
   for (PetscInt k = 0; k < 2; ++k) energy[k] = Uniformly(first << k, shape, order, &lower[k]);
   printf("%s of order %d: %.3e %.3e, order %.3f\n", shape ? "triangles" : "quads", (int)order, (double)energy[0], (double)energy[1],
          (double)PetscLog2Real(energy[0] / energy[1]));
-  ck_assert_double_eq_tol(PetscLog2Real(energy[0] / energy[1]), order == 1 ? 1. : 1.5, 0.1);
-  for (PetscInt k = 0; order <= 2 && k < 2; ++k)
-    ck_assert_double_eq_tol(lower[k], known[shape][order - 1][k], 0.05 * known[shape][order - 1][k]);
+  worst[0] = PetscMax(worst[0], PetscAbsReal(PetscLog2Real(energy[0] / energy[1]) - (order == 1 ? 1. : 1.5)));
+  ck_assert_double_le(worst[0], 0.1);
+  for (PetscInt k = 0; order <= 2 && k < 2; ++k) {
+    worst[1] = PetscMax(worst[1], PetscAbsReal(lower[k] / known[shape][order - 1][k] - 1.));
+    ck_assert_double_le(worst[1], 0.05);
+  }
+  if (_i != 6) return; /* the last that has a mesh */
+  CkCase("V03", "order in the energy norm off 1 and, from order 2 on, 3/2", worst[0], 0.1);
+  CkCase("V03", "energy errors off the known ones of P1, Q1, P2, Q2, relative", worst[1], 0.05);
 }
 END_TEST
 

@@ -114,14 +114,26 @@ static PetscInt Sweeps(void)
   return sweeps;
 }
 
+/* One rank: the digits of others differ, and one line is enough */
+static PetscBool Alone(void)
+{
+  PetscMPIInt size;
+
+  CkOk(MPI_Comm_size(PETSC_COMM_WORLD, &size));
+  return (PetscBool)(size == 1);
+}
+
 /* d[0..3] obey the recurrence; its factor is measured without knowing where it leads */
-static void CheckRecurrence(const PetscReal d[4], PetscReal gamma)
+static void CheckRecurrence(const char what[], const PetscReal d[4], PetscReal gamma)
 {
   const PetscReal factor = 1. - gamma * (1. + C / theta);
+  PetscReal       worst  = 0.;
 
   ck_assert_double_eq_tol(d[0], DELTA, 1e-10 * DELTA);
   for (PetscInt k = 0; k < 3; ++k) ck_assert_double_eq_tol(d[k + 1], factor * d[k] + gamma * DELTA, 1e-9 * DELTA);
-  for (PetscInt k = 0; k < 2; ++k) ck_assert_double_eq_tol((d[k + 2] - d[k + 1]) / (d[k + 1] - d[k]), factor, 1e-6);
+  for (PetscInt k = 0; k < 2; ++k) worst = PetscMax(worst, PetscAbsReal((d[k + 2] - d[k + 1]) / (d[k + 1] - d[k]) - factor));
+  ck_assert_double_le(worst, 1e-6);
+  if (Alone()) CkCase("V01", what, worst, 1e-6);
 }
 
 START_TEST(relaxation_by_hand_contracts_the_penetration_by_0_252)
@@ -135,7 +147,7 @@ START_TEST(relaxation_by_hand_contracts_the_penetration_by_0_252)
     if (k) Relax(0.02);
     d[k] = theta * Pressure();
   }
-  CheckRecurrence(d, 0.02);
+  CheckRecurrence("factor of a relaxation by hand off 0.252", d, 0.02);
   Close();
 }
 END_TEST
@@ -153,7 +165,7 @@ START_TEST(ddneumann_contracts_the_penetration_by_0_252)
     ck_assert_int_eq(Solve(options), SNES_DIVERGED_MAX_IT);
     d[k] = theta * Pressure();
   }
-  CheckRecurrence(d, 0.02);
+  CheckRecurrence("factor of ddneumann off 0.252", d, 0.02);
   Close();
 }
 END_TEST
@@ -175,13 +187,18 @@ static const PetscReal penalties[] = {0.5, 0.05, 0.005, 5e-4};
 
 START_TEST(one_step_with_the_optimal_relaxation_gives_the_exact_pressure)
 {
-  const PetscReal exact = DELTA / (C + penalties[_i] / YOUNG);
+  static PetscReal worst = 0.;
+  const PetscReal  exact = DELTA / (C + penalties[_i] / YOUNG);
+  PetscReal        error;
 
   OpenPenalty(penalties[_i]);
   if (_i == 1) ck_assert_double_eq_tol(exact, 112.299465, 1e-6);
   CkOk(AbutInterfaceComputeStart(iface, ABUT_START_NOCONTACT, x));
   Relax(1. / (1. + C / theta));
-  ck_assert_double_eq_tol(Pressure(), exact, 1e-9 * exact);
+  error = PetscAbsReal(Pressure() / exact - 1.);
+  ck_assert_double_le(error, 1e-9);
+  worst = PetscMax(worst, error);
+  if (_i == 3 && Alone()) CkCase("V01", "pressure after one sweep with the best gamma, c 0.5 to 5e-4", worst, 1e-8);
   Close();
 }
 END_TEST
