@@ -1,7 +1,7 @@
 """Bad input ends in one line on standard error and exit status 1, before any mesh is made, and no file is touched. golden.txt has the lines."""
 import concurrent.futures, os, random, re, shlex, tempfile, unittest
 
-from abut import BUILD, LAYERS, PROGRAM, execute
+from abut import BUILD, LAYERS, PROGRAM, case, execute
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 LINE = "abut: "
@@ -77,6 +77,25 @@ def test_every_bad_input_ends_in_its_line():
     cases = list(read_golden())
     assert len(cases) > 100
     check(cases)
+
+
+def test_constants_that_no_material_has():
+    """Exit status 1 and one line that begins with the key, which has the name of the body; PETSc's log knows neither mesh nor matrix"""
+    complaints, made = [], 0
+    for body in "lower", "upper":
+        for key, values in ("poisson", (0.5, 0.51, 7, -1, -1.01)), ("young", (0, -0.0, -2.1e5)):
+            for value in values:
+                with tempfile.TemporaryDirectory() as folder:
+                    prepare(folder)
+                    result = abut(f"LAYERS -{body}_material_{key} {value} -log_view :FOLDER/log.txt", folder)
+                    with open(f"{folder}/log.txt") as f:
+                        made += len(re.findall("^ *(AbutBodyAssemble|Distributed Mesh|Matrix )", f.read(), re.M))
+                lines = result.stderr.splitlines()
+                if result.returncode != 1 or result.stdout or len(lines) != 1 or not lines[0].startswith(f"{LINE}{body}_material_{key}: "):
+                    complaints.append((body, key, value, result.returncode, result.stderr))
+    print(complaints)
+    case("H02", "bad constants without exit status 1 and a line with body and key", len(complaints), 0)
+    case("H02", "meshes and matrices made before the line", made, 0)
 
 
 def test_on_two_ranks_it_is_still_one_line():

@@ -264,6 +264,7 @@ static void CheckPressures(AbutScene scene, const Patch *patch, PetscInt variant
 
 START_TEST(an_even_pressure_is_exact_on_any_meshes)
 {
+  static PetscReal worst = 0.; /* of all that went before */
   const Patch   *patch   = &patches[_i / nvariants];
   const PetscInt variant = _i % nvariants, unequal = _i / nvariants >= first_unequal && _i / nvariants < end_unequal;
   AbutScene      scene = Create(patch, variant, "-mid_pair_gap 0.002 -mid_pair_theta 4 -snes_rtol 1e-12");
@@ -275,9 +276,11 @@ START_TEST(an_even_pressure_is_exact_on_any_meshes)
   CkOk(AbutSceneSolve(scene));
   CkOk(AbutSceneGetExitStatus(scene, &status));
   ck_assert_int_eq(status, 0);
-  for (PetscInt b = 0; b < 2; ++b) ck_assert_double_lt(CkNodalError(body[b], &box[b].field), 1e-10);
+  for (PetscInt b = 0; b < 2; ++b) worst = PetscMax(worst, CkNodalError(body[b], &box[b].field));
+  ck_assert_double_lt(worst, 1e-10);
   CheckPressures(scene, patch, variant, PETSC_TRUE);
   Destroy(&scene);
+  if (_i == nvariants * npatches - 1) CkCase("H22", "displacement off, 1:100, offset, unequal sides, overlaps of 1e-8 to all", worst, 1e-10);
 }
 END_TEST
 
