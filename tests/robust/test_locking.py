@@ -37,7 +37,7 @@ def test_quads_of_order_1_take_the_mean_dilatation_and_do_not_lock():
 def test_triangles_of_order_2_do_not_lock():
     error = errors(16, 2, "triangle")
     case("H01", "force off, triangles of order 2, 1/16, nu to 0.49999", max(error), 1e-3)
-    assert max(error) < 2 * min(error), error
+    case("H01", "its error at one nu over that at another, triangles of order 2", max(error) / min(error), 1.5)
 
 
 def test_quads_of_order_2_hardly_lock():

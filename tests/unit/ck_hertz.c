@@ -206,7 +206,10 @@ START_TEST(cells_far_from_squares_are_no_worse_than_squares)
       ck_assert_double_lt(e.pressure, 1.5 * square.pressure);
     }
   }
-  CkCase("H13", _i ? "energy error over that of right isosceles triangles, 10 and 100 times as long" : "energy error over that of squares, aspect 10 and 100", worst[0], 3.);
+  CkCase("H13",
+         _i ? "energy error over that of right isosceles triangles, 10 and 100 times as long"
+            : "energy error over that of squares, aspect 10 and 100",
+         worst[0], 3.);
   CkCase("H13", _i ? "the same, angles of 0.1 and 0.06 degrees" : "the same, aspect 573 and 1000", worst[1], 2.);
 }
 END_TEST
@@ -219,7 +222,8 @@ START_TEST(a_third_of_a_cell_of_disorder_costs_less_than_half_the_accuracy)
          (double)uneven.energy[1], (double)uneven.pressure, (double)even.energy[0], (double)even.energy[1], (double)even.pressure);
   for (PetscInt b = 0; b < 2; ++b) {
     ck_assert(uneven.energy[b] != even.energy[b]);
-    CkCase("H13", _i ? "triangles moved by 30 %, energy error over that of even ones" : "quads moved by 30 %, energy error over that of even ones",
+    CkCase("H13",
+           _i ? "triangles moved by 30 %, energy error over that of even ones" : "quads moved by 30 %, energy error over that of even ones",
            uneven.energy[b] / even.energy[b], 1.5);
   }
   ck_assert_double_lt(uneven.pressure, 2. * even.pressure);
