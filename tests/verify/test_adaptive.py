@@ -56,8 +56,8 @@ def test_a_cap_ends_the_run_with_the_best_answer():
 
 
 def test_bodies_without_stress_have_no_error_and_keep_their_meshes():
-    """A block that nothing loads, and the lower of two layers that part: every stress is 0, and so must be what is said of it. The upper layer
-    is only moved: of its stress there is round-off, which the boundary elements of fembem magnify beyond what counts as none: it is not asked."""
+    """A block that nothing loads, and the lower of two layers that part: every stress is 0, and so must be what is said of it. The
+    upper layer is only moved: its stress is round-off, which the boundary elements of fembem magnify: it is not asked."""
     block = "-scene_bodies lower -lower_mesh_box 0,0,2,1 -lower_mesh_cells 4,2 -lower_material_young 1 -lower_material_poisson 0.3"
     block += " -lower_bc_left_u1 0 -lower_bc_bottom_u2 0"
     apart = [LAYERS, "-upper_mesh_cells 8,2", "-upper_bc_top_u2 1e-3", "-snes_type ddactive"]
