@@ -276,8 +276,12 @@ START_TEST(an_even_pressure_is_exact_on_any_meshes)
   CkOk(AbutSceneSolve(scene));
   CkOk(AbutSceneGetExitStatus(scene, &status));
   ck_assert_int_eq(status, 0);
-  for (PetscInt b = 0; b < 2; ++b) worst = PetscMax(worst, CkNodalError(body[b], &box[b].field));
-  ck_assert_double_lt(worst, 1e-10);
+  for (PetscInt b = 0; b < 2; ++b) {
+    const PetscReal off = CkNodalError(body[b], &box[b].field);
+
+    ck_assert_double_lt(off, 1e-10); /* which NaN is not */
+    worst = PetscMax(worst, off);
+  }
   CheckPressures(scene, patch, variant, PETSC_TRUE);
   Destroy(&scene);
   if (_i == nvariants * npatches - 1)
@@ -312,9 +316,9 @@ START_TEST(sides_of_unequal_length_are_in_balance)
     PetscReal reaction[2], applied[2];
 
     CkOk(AbutBodyGetReaction(body[b], reaction, applied));
+    ck_assert_double_eq_tol(reaction[across], b ? -state.force : state.force, 1e-10 * state.force);
     worst = PetscMax(worst, PetscAbsReal(reaction[across] - (b ? -state.force : state.force)) / state.force);
   }
-  ck_assert_double_le(worst, 1e-10);
   Destroy(&scene);
   if (_i == nvariants * (end_unequal - first_unequal) - 1)
     CkCase("H22", "forces of contact and supports off each other, beside the other side open", worst, 1e-10);

@@ -7,8 +7,8 @@ from test_output import read_vtu
 
 FULL = """-scene_bodies lower,upper -scene_pairs mid -mid_pair_gap 1e-3*x^2 -mid_pair_penalty 0 -lower_mesh_box -4,0,4,1
 -upper_mesh_box -4,1,4,2 -lower_mesh_cells 16,2 -upper_mesh_cells 16,2 -lower_material_young 2.1e5 -lower_material_poisson 0.3
--upper_material_young 2.1e5
--upper_material_poisson 0.3 -lower_bc_bottom_u1 0 -lower_bc_bottom_u2 0 -upper_bc_top_u1 0 -upper_bc_top_u2 -1.366e-3"""
+-upper_material_young 2.1e5 -upper_material_poisson 0.3 -lower_bc_bottom_u1 0 -lower_bc_bottom_u2 0
+-upper_bc_top_u1 0 -upper_bc_top_u2 -1.366e-3"""
 UPPER, LOWER = "-mid_pair_bodies upper,lower -mid_pair_sides bottom,top", "-mid_pair_bodies lower,upper -mid_pair_sides top,bottom"
 ADAPT = "-adaptor_type {} -adaptor_{} -estimator_type {}"
 CLOSURE, DIGITS = 1.366e-3, 9  # digits by which points are told apart
