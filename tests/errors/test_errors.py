@@ -90,6 +90,25 @@ def test_every_bad_input_ends_in_its_line():
     case("H26", "seconds to the end of the slowest of them", check(cases), 5)
 
 
+def test_constants_that_no_material_has():
+    """Exit status 1 and one line that begins with the key, which has the name of the body; PETSc's log knows neither mesh nor matrix"""
+    complaints, made = [], 0
+    for body in "lower", "upper":
+        for key, values in ("poisson", (0.5, 0.51, 7, -1, -1.01)), ("young", (0, -0.0, -2.1e5)):
+            for value in values:
+                with tempfile.TemporaryDirectory() as folder:
+                    prepare(folder)
+                    result = abut(f"LAYERS -{body}_material_{key} {value} -log_view :FOLDER/log.txt", folder)
+                    with open(f"{folder}/log.txt") as f:
+                        made += len(re.findall("^ *(AbutBodyAssemble|Distributed Mesh|Matrix )", f.read(), re.M))
+                lines = result.stderr.splitlines()
+                if result.returncode != 1 or result.stdout or len(lines) != 1 or not lines[0].startswith(f"{LINE}{body}_material_{key}: "):
+                    complaints.append((body, key, value, result.returncode, result.stderr))
+    print(complaints)
+    case("H02", "bad constants without exit status 1 and a line with body and key", len(complaints), 0)
+    case("H02", "meshes and matrices made before the line", made, 0)
+
+
 def test_on_two_ranks_it_is_still_one_line():
     """One of every kind; mpiexec adds its own"""
     kinds = "yuong|nowhere.yml|garbage.yml|box 0,0,0,1|poisson 0.5|gap 1/0|_t1 1/.x|left,top|type guess|mine.so|_u2 0|record nowhere|pc_type best"

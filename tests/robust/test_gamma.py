@@ -6,7 +6,7 @@ exact interface compliances.
 """
 import os, re, tempfile, unittest
 
-from abut import LAYERS, run
+from abut import LAYERS, case, run
 
 NU = 0.3
 MATERIAL = " -{0}_material_young 2.1e5 -{0}_material_poisson 0.3"
@@ -40,28 +40,36 @@ STARTS = [f"-snes_ddneumann_start {start}" for start in ("zero", "nocontact")]
 
 
 def test_gammas_of_0_02_to_0_056_converge_to_1e_9_with_one_force():
-    exact = exact_force()
+    exact, off = exact_force(), []
     for gamma in 0.02, 0.05, 0.053, 0.056:
         for start in STARTS:
             record = relax(gamma, start, "-snes_rtol 1e-9")
             print(gamma, start, record["verdict"], record["sweeps"], record["pair.mid.force"])
             assert record["verdict"] == "converged" and near(record["pair.mid.force"], exact, 1e-6), (gamma, start)
+            off.append(abs(record["pair.mid.force"] / exact - 1))
+    case("H05", "force off, gamma 0.02 to 0.056, from two starts", max(off), 1e-6)
 
 
 def test_gammas_of_0_06_to_1_end_as_an_oscillation_within_200_sweeps():
+    sweeps, converged = [], 0
     for gamma in 0.06, 0.1, 0.5, 1:
         for start in STARTS:
             record = relax(gamma, start, "-snes_rtol 1e-9", expect=2)
             print(gamma, start, record["verdict"], record["sweeps"], record["pair.mid.force"])
-            assert record["verdict"] == "oscillation" and record["sweeps"] <= 200, (gamma, start, record["verdict"], record["sweeps"])
+            sweeps.append(record["sweeps"])
+            converged += record["verdict"] != "oscillation"
+    case("H05", "runs with gamma 0.06 to 1 without exit status 2 and verdict oscillation", converged, 0)
+    case("H05", "their sweeps until the verdict", max(sweeps), 200)
 
 
 def test_gamma_0_057_never_gives_a_wrong_answer():
-    exact = exact_force()
+    exact, wrong = exact_force(), 0
     for start in STARTS:
         record = relax(0.057, start, "-snes_rtol 1e-9", expect=None)
         good = record.status == 0 and record["verdict"] == "converged" and near(record["pair.mid.force"], exact, 1e-6)
-        assert good or (record.status == 2 and record["verdict"] == "oscillation"), (start, record["verdict"], record["pair.mid.force"])
+        wrong += not (good or (record.status == 2 and record["verdict"] == "oscillation"))
+        print(start, record["verdict"], record["pair.mid.force"])
+    case("H05", "runs with gamma 0.057 called converged with a force off by 1e-6", wrong, 0)
 
 
 # --- the rule it stops by ------------------------------------------------------------------------------------------------------
@@ -70,23 +78,26 @@ EPS = 0.0015
 
 
 def test_the_residual_rule_leaves_less_than_5_eps_in_the_force_for_gammas_of_0_001_to_0_0553():
-    exact = exact_force()
+    exact, worst = exact_force(), 0
     for gamma in 0.001, 0.002, 0.005, 0.01, 0.02, 0.0553:
         for start in STARTS[1:] if gamma < 0.01 else STARTS:
             record = relax(gamma, start, f"-snes_rtol {EPS}")
             error = record["pair.mid.force"] / exact - 1
             print(gamma, start, record["sweeps"], f"{error:.1e}")
             assert record["verdict"] == "converged" and abs(error) <= 5 * EPS, (gamma, start, error)
+            worst = max(worst, abs(error) / EPS)
+    case("H06", "error of the force over eps, residual rule, gamma 0.001 to 0.0553", worst, 5)
 
 
 def test_the_rule_of_the_paper_stops_at_gamma_0_01_with_a_force_10_per_cent_off_and_the_record_says_so():
-    exact = exact_force()
-    error = {}
+    exact, error, silent = exact_force(), {}, 0
     for gamma in 0.01, 0.02, 0.053:  # with one norm of all bodies, not one a body, it would stop even earlier
         record = relax(gamma, STARTS[1], f"-snes_ddneumann_stop paper -snes_ddneumann_eps {EPS}")
         error[gamma] = record["pair.mid.force"] / exact - 1
-        assert record["verdict"] == "converged" and record["sweeps"] <= 40 and record["error.loop"] > 0.01, (gamma, record["error.loop"])
+        assert record["verdict"] == "converged" and record["sweeps"] <= 40, (gamma, record["sweeps"])
+        silent += record["error.loop"] <= 0.01
         print(gamma, record["sweeps"], f"{error[gamma]:.1e}", record["error.loop"])
+    case("H06", "stops by the paper's rule whose record claims an error of 0.01 or less", silent, 0)
     assert near(error[0.01], 0.106, 0.05) and near(error[0.053], 0.0216, 0.05), error
 
 

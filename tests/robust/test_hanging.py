@@ -5,7 +5,7 @@ Lengths in cm, stresses in MPa, the half model, exact contact.
 """
 import csv, os, tempfile
 
-from abut import run
+from abut import case, run
 from test_exact import MIDDLE, exact_pressure
 from test_hard import LAYERS, YOUNG, layers
 
@@ -40,6 +40,7 @@ def variants(x, levels):
 
 def test_an_even_pressure_stays_even():
     """Also at the free end of the side, x = 4"""
+    off = []
     for order, shape in (1, "quad"), (2, "quad"), (3, "quad"), (2, "triangle"):
         for x, levels in (1, 1), (4, 3):
             for sizes in variants(x, levels):
@@ -47,12 +48,16 @@ def test_an_even_pressure_stays_even():
                 record, nodes = solve(order, shape, sizes, *probe, "-snes_rtol 1e-12", closure=1e-3, gap="0")
                 exact = 1e-3 / LAYERS
                 assert max(abs(p / exact - 1) for _, p in nodes) < 1e-9, (order, shape, sizes)
-                assert abs(record["probe.A.u2"] / (-0.97 * exact * (1 - 0.3**2) / YOUNG) - 1) < 1e-10, record["probe.A.u2"]
+                off.append(abs(record["probe.A.u2"] / (-0.97 * exact * (1 - 0.3**2) / YOUNG) - 1))
                 assert abs(record["probe.A.s11"]) < 1e-9 * exact and abs(record["probe.A.s22"] / exact + 1) < 1e-9
+
+
+    case("H19", "displacement off under an even pressure, nodes that hang beside the contact", max(off), 1e-10)
 
 
 def test_pressures_at_the_edge_of_the_contact_do_not_oscillate():
     """They fall from node to node, and change by less than 5 % of the largest; that of the node beyond the edge, at 1, comes nearer to none"""
+    changes, rises = [], []
     for order in 1, 2, 3:
         for side in "first", "second":
             _, plain = solve(order, "quad", [], f"-mid_pair_pressure_side {side}")
@@ -64,6 +69,9 @@ def test_pressures_at_the_edge_of_the_contact_do_not_oscillate():
                 beyond = [max(p for x, p in all if x > 0.9927) / MIDDLE for all in (plain, nodes)]
                 steps = [after[1] - before[1] for before, after in zip(nodes, nodes[1:])]
                 print(f"order {order}, {side}, {len(nodes)} nodes: change {change:.1e}, error, beyond", error, beyond, max(steps))
-                assert change < 0.05 and error[1] < 0.05 and beyond[1] < beyond[0] + 0.02, (order, side, sizes)
-                assert max(steps) < 1e-3 * MIDDLE, (order, side, sizes)
-                assert record["check.balance"] < 1e-8
+                assert error[1] < 0.05 and beyond[1] < beyond[0] + 0.02, (order, side, sizes)
+                assert max(steps) < 1e-3 * MIDDLE and record["check.balance"] < 1e-8, (order, side, sizes)
+                changes.append(change)
+                rises.append(max(steps) / MIDDLE)
+    case("H19", "change of nodal pressures against the plain mesh, over the largest", max(changes), 0.05)
+    case("H19", "their rise from one node to the next one out, over the largest", max(rises), 0.05)

@@ -4,9 +4,9 @@ contact, no hold, all contact.
 Lengths in cm, stresses in MPa, the half model, per cm of depth. What is expected are closed forms, scaling laws and
 values of other programs.
 """
-import math
+import csv, math, os, tempfile
 
-from abut import run, run_error
+from abut import case, run, run_error
 
 YOUNG, NU, GAP, CLOSURE = 2.1e5, 0.3, 1e-3, 1.366e-3
 FORCE, MIDDLE, EDGE = 126.57389014, 166.20243347, 0.99264208  # of exact contact, see examples/layers/reference.json
@@ -39,16 +39,32 @@ def relative(value, exact):
 
 def test_contact_of_unequal_materials_scales_with_the_sum_of_their_compliances():
     """With the same heights P and p0 are proportional to 1/(1/E1' + 1/E2') and the zone is the same, whatever the materials"""
-    equal = solve(layers())
+    equal, worst = solve(layers()), [0, 0, 0, 0, 0]
     for contrast in 1e4, 1e6, 1e8:
         for young in (YOUNG, contrast * YOUNG), (contrast * YOUNG, YOUNG):
             record = solve(layers(young=young))
             law = 2 / (1 + 1 / contrast)
             P, p0 = relative(record["pair.mid.force"], law * FORCE), relative(record["pair.mid.pressure_max"], law * MIDDLE)
             print(f"E {young[0]:g}, {young[1]:g}: {record['sweeps']} sweeps, P {P:.1e}, p0 {p0:.1e}, a {record['pair.mid.contact_edge']}")
-            assert P < 1e-3 and p0 < 1e-3 and relative(record["pair.mid.contact_edge"], equal["pair.mid.contact_edge"]) < 1e-3
-            assert record["pair.mid.active"] == equal["pair.mid.active"] and record["sweeps"] <= 12
-            assert record["check.balance"] < 1e-8 and record["error.linear"] < 1e-8
+            a = relative(record["pair.mid.contact_edge"], equal["pair.mid.contact_edge"])
+            worst = [max(pair) for pair in zip(worst, (P, p0, a, record["error.linear"], record["sweeps"]))]
+            assert record["pair.mid.active"] == equal["pair.mid.active"] and record["check.balance"] < 1e-8
+    case("H03", "force off the scaling law, contrast 1e4 to 1e8, h = 1/16", worst[0], 1e-3)
+    case("H03", "pressure at x = 0 off the scaling law", worst[1], 1e-3)
+    case("H03", "end of the contact off that of equal layers", worst[2], 1e-3)
+    case("H03", "error of the linear solvers, relative", worst[3], 1e-8)
+    case("H03", "sweeps of the default loop", worst[4], 12)
+
+
+def test_the_automatic_relaxation_knows_the_softer_layer():
+    """theta = 0.05 H/E as both layers together feel it: the force is that of equal layers with c = 0.05, 123.07842, by the scaling law"""
+    for contrast in 1e4, 1e8:
+        theta = 0.025 * (1 + 1 / contrast) / YOUNG
+        record = solve(layers(young=(YOUNG, contrast * YOUNG)), f"-snes_type ddneumann -mid_pair_theta {theta!r}")
+        error = relative(record["pair.mid.force"], 123.07842 * 2 / (1 + 1 / contrast))
+        print(f"contrast {contrast:g}: {record['sweeps']} sweeps, P {error:.1e}")
+        assert record["verdict"] == "converged" and error < 1e-3
+        case("H03", "sweeps of the paper's loop, automatic gamma, theta of the soft layer", record["sweeps"], 1000)
 
 
 def test_pressures_on_the_softer_side_do_not_oscillate():
@@ -63,28 +79,38 @@ def test_pressures_on_the_softer_side_do_not_oscillate():
 
 def test_a_fixed_relaxation_on_a_soft_layer_does_not_pass_for_an_answer():
     """theta = 0.05 H/E of the stiff layer; the largest relaxation that converges is 1.8e-5 at a contrast of 1e4"""
+    passed = 0
     for contrast in 1e4, 1e6:
-        record = solve(layers(c=0.05, young=(YOUNG, contrast * YOUNG)), "-snes_type ddneumann -snes_ddneumann_gamma 0.02", expect=2)
-        assert record["verdict"] in ("oscillation", "diverged", "stagnation"), record["verdict"]
+        record = solve(layers(c=0.05, young=(YOUNG, contrast * YOUNG)), "-snes_type ddneumann -snes_ddneumann_gamma 0.02", expect=None)
+        passed += record.status != 2 or record["verdict"] not in ("oscillation", "diverged", "stagnation")
         assert record.stdout.splitlines()[-1] == f"verdict: {record['verdict']}"
+    case("H03", "runs with gamma = 0.02 on a soft layer that end as an answer", passed, 0)
 
 
 # --- penalty -------------------------------------------------------------------------------------------------------------------
 
 
 def test_the_force_settles_as_the_penalty_vanishes():
-    force = []
+    force, plateau, sweeps, linear = [], [], [], []
     for c in (10.0**-k for k in range(1, 11)):
         record = solve(layers(c=c))
         force.append(record["pair.mid.force"])
         print(f"c {c:.0e}: P {force[-1]} ({force[-1] / FORCE - 1:+.2e}), {record['sweeps']} sweeps, residual {record['error.loop']:.1e}")
-        assert record["sweeps"] <= 12 and 0 <= record["error.loop"] <= 1e-7 and record["error.linear"] < 1e-8
-        assert c > 1e-4 or relative(force[-1], FORCE) < 2e-4, (c, force[-1])
+        assert 0 <= record["error.loop"] <= 1e-7
+        sweeps.append(record["sweeps"])
+        linear.append(record["error.linear"])
+        plateau += [relative(force[-1], FORCE)] if c < 2e-4 else []
+    assert len(plateau) == 7
     assert all(a <= b * (1 + 1e-9) for a, b in zip(force, force[1:])), force  # and the record has ten digits
+    case("H04", "force off that of exact contact, c 1e-4 to 1e-10", max(plateau), 2e-4)
+    case("H04", "sweeps, c 0.1 to 1e-10", max(sweeps), 12)
+    case("H04", "error of the linear solvers, relative", max(linear), 1e-8)
     assert relative(force[-1], solve(layers())["pair.mid.force"]) < 1e-8
 
 
 def test_a_tolerance_out_of_reach_is_not_called_reached():
+    ends = [solve(layers(c=1e-10), options, expect=None).status for options in ("-snes_rtol 1e-30", "-snes_max_it 1")]
+    case("H04", "tolerances out of reach that are called reached", sum(status == 0 for status in ends), 0)
     record = solve(layers(c=1e-10), "-snes_rtol 1e-30", expect=None)
     assert record.status == 2 and record["verdict"] == "stagnation" and relative(record["pair.mid.force"], FORCE) < 2e-4
     record = solve(layers(c=1e-10), "-snes_max_it 1", expect=None)
@@ -96,36 +122,138 @@ def test_a_tolerance_out_of_reach_is_not_called_reached():
 
 def test_two_blocks_without_a_gap_are_pressed_uniformly():
     """p = closure/(H1/E1' + H2/E2' + theta), on any two meshes; the zone is right from the start"""
+    error, sweeps = [], []
     for c, pressure in (0.5, 90.517241), (0.05, 112.299465), (0.005, 115.068493), (5e-4, 115.352925), (0, 115.384615):
         exact = 1e-3 / (LAYERS + c / YOUNG)
         assert relative(pressure, exact) < 1e-8
         for n, upper, shape in ((4, 4, "quad"), (4, 3, "quad"), (3, 4, "triangle")):
             record = solve(layers(n, c, 1e-3, gap="0", upper=upper), "-lower_mesh_shape", shape)
-            assert relative(record["pair.mid.pressure_max"], exact) < 1e-8 and relative(record["pair.mid.force"], 4 * exact) < 1e-8
+            error += [relative(record["pair.mid.pressure_max"], exact), relative(record["pair.mid.force"], 4 * exact)]
+            sweeps.append(record["sweeps"])
             assert record["pair.mid.active"] == 4 * max(n, upper) + 1 and relative(record["pair.mid.contact_edge"], 4) < 1e-9
-            assert record["sweeps"] <= 3, (c, n, upper, shape, record["sweeps"])
+    case("H07", "pressure and force off the closed form, five penalties, three meshes", max(error), 1e-8)
+    case("H07", "sweeps of the default loop, which has the zone from the start", max(sweeps), 3)
+
+
+def zone(*options):
+    """The record, and where its nodes are closed"""
+    with tempfile.TemporaryDirectory() as folder:
+        record = run(None, *options, "-output_profile", f"{folder}/profile.csv", expect=None)
+        with open(os.path.join(folder, "profile.csv")) as f:
+            rows = [row for row in csv.DictReader(f) if row["side"] == "pressure"]
+    return record, {float(row["x"]) for row in rows if float(row["pressure"]) > 0}
+
+
+def test_the_zone_does_not_chatter():
+    """Of the last iterations of the paper's loop, which are those of runs that stop one or two iterations earlier"""
+    changes = 0
+    for start in "zero", "nocontact":
+        loop = f"-snes_type ddneumann -snes_ddneumann_start {start}"
+        record, closed = zone(layers(4, 0.05, 1e-3, gap="0", upper=3), loop)
+        iterations = record["sweeps"] - 1  # the first sweep is that of the start
+        assert record.status == 0 and len(closed) == 17
+        for less in 1, 2, 3:
+            record, before = zone(layers(4, 0.05, 1e-3, gap="0", upper=3), loop, f"-snes_max_it {iterations - less}")
+            assert record["verdict"] == "max_iterations"
+            changes += len(before ^ closed)
+    case("H07", "nodes that open or close in the last 3 sweeps of the paper's loop", changes, 0)
 
 
 def test_blocks_that_touch_everywhere_and_are_not_pressed_stay_as_they_are():
+    force = []
     for c in 0, 0.05:
         for upper in 4, 3:
             record = solve(layers(4, c, 0.0, gap="0", upper=upper))
+            force.append(record["pair.mid.force"])
             assert record["verdict"] == "converged" and record["sweeps"] <= 2, (c, upper, record["sweeps"])
-            assert record["pair.mid.force"] == 0 and record["pair.mid.active"] == 0 and record["energy.strain"] == 0
+            assert record["pair.mid.active"] == 0 and record["energy.strain"] == 0
+    case("H07", "force of blocks that touch everywhere and are not pressed", max(force), 0)
+
+
+# --- overlap -------------------------------------------------------------------------------------------------------------------
+
+
+def test_sides_that_overlap_at_first_are_pushed_apart():
+    """By 1e-4 everywhere, or on the inner half, and everywhere in contact: P = (4 closure - integral of the gap)/(compliance + theta)"""
+    error = []
+    for c in 0, 0.05:
+        for gap, closure, depth in ("0-1e-4", 0.0, 4e-4), ("0-1e-4", 1e-3, 4e-4), ("0-1e-4*(x<2)", 1e-3, 2e-4):
+            words = layers(4, c, closure, gap="GAP").split()
+            record = solve(*[gap if word == "GAP" else word for word in words], "-snes_rtol 1e-10")
+            error.append(relative(record["pair.mid.force"], (4 * closure + depth) / (LAYERS + c / YOUNG)))
+            assert record["pair.mid.active"] == 17 and record["check.balance"] < 1e-8, (c, gap, closure)
+            if depth == 4e-4:
+                error.append(relative(record["pair.mid.pressure_max"], (closure + 1e-4) / (LAYERS + c / YOUNG)))
+    case("H10", "force and pressure off the closed form, overlap of 1e-4", max(error), 1e-8)
+
+
+# --- contact in a point --------------------------------------------------------------------------------------------------------
+
+
+def test_a_wedge_that_presses_with_one_node():
+    """Gap 1e-3 x, closure 1e-4: cells of 1/4 to 1/16 have one node in contact, and finer meshes come to one force"""
+    force, active, ends = [], [], 0
+    for n in 4, 8, 16, 32, 64:
+        record = run(None, *layers(n, 0, 1e-4, gap="1e-3*x").split(), expect=None)
+        ends += record.status == 0
+        force.append(record["pair.mid.force"])
+        active.append(record["pair.mid.active"])
+    print(force, active)
+    assert active[0] == 1 and active[-1] > 1, active
+    case("H11", "runs of a wedge that do not end as converged, 1 to 3 nodes in contact", 5 - ends, 0)
+    changes = [abs(a - b) for a, b in zip(force, force[1:])]
+    case("H11", "change of the force from one mesh to the next over that before", max(b / a for a, b in zip(changes, changes[1:])), 1)
+    case("H11", "last change of the force, h = 1/32 to 1/64", changes[-1] / force[-1], 0.03)
+
+
+def test_a_corner_that_presses_on_a_plane():
+    """A block 4 by 1 whose side comes down on a wide layer inclined by 1/100 touches with its corner alone"""
+    words = layers(8, 0, 1e-4, gap="1e-2*(4-x)").split()
+    words[words.index("-lower_mesh_box") + 1] = "0,0,8,1"
+    words[words.index("-lower_mesh_cells") + 1] = "64,8"
+    record = solve(*words)
+    print(record["pair.mid.force"], record["pair.mid.active"])
+    assert record["pair.mid.active"] == 1 and record["pair.mid.force"] > 0 and record["check.balance"] < 1e-8
+    case("H11", "complementarity where a corner presses on a layer with one node", record["pair.mid.complementarity"], 1e-8)
+
+
+# --- load up and down ----------------------------------------------------------------------------------------------------------
+
+
+def test_the_way_to_a_load_does_not_matter():
+    """Without friction the force depends on the closure alone. Loads have no steps; what is left of a way to a load is where the loop
+    begins: without contact, with all of it, with that of springs, or with a layer model. From all of them it must end at one force."""
+    spread = []
+    for closure in 1.366e-3, 5e-4, 5e-3:
+        force = [solve(layers(8, 0.05, closure), "-snes_type ddactive -snes_rtol 1e-11")["pair.mid.force"]]
+        for start in "zero", "nocontact", "winkler":
+            loop = f"-snes_type ddneumann -snes_ddneumann_start {start} -snes_rtol 1e-11"
+            force.append(solve(layers(8, 0.05, closure), loop)["pair.mid.force"])
+        print(closure, force)
+        spread.append(max(force) / min(force) - 1)
+    case("H27", "force from one start of the loop off that from another", max(spread), 1e-8)
+    case("H27", "force that is left with a closure of -1e-3", solve(layers(8, 0.05, -1e-3))["pair.mid.force"], 0)
 
 
 # --- no contact ----------------------------------------------------------------------------------------------------------------
 
 
 def test_layers_that_do_not_meet_carry_no_force():
+    force, sweeps, silent, strain = [], [], 0, []
     for c in 0, 0.05:
         for options in {"closure": -1e-3}, {"gap": "1"}, {"gap": "1", "closure": -1e-3}, {"gap": "0", "closure": -1e-3}:
             record = solve(layers(4, c, **options))
-            assert "pair mid: no contact" in record.stdout.splitlines(), record.stdout
+            silent += "pair mid: no contact" not in record.stdout.splitlines()
+            force.append(abs(record["pair.mid.force"]))
+            sweeps.append(record["sweeps"])
+            strain.append(record["energy.strain"] / (LAYERS**-1 * options.get("closure", CLOSURE) ** 2))
             for key in "force", "pressure_max", "contact_length", "contact_edge", "active", "penetration_max":
                 assert record[f"pair.mid.{key}"] == 0, (c, options, key, record[f"pair.mid.{key}"])
-            assert record["sweeps"] <= 2 and record["verdict"] == "converged", (c, options, record["sweeps"])
-            assert record["error.loop"] == 0 and record["energy.penalty"] == 0
+            assert record["verdict"] == "converged" and record["error.loop"] == 0 and record["energy.penalty"] == 0
+    case("H08", "force of layers that do not meet", max(force), 0)
+    case("H08", "sweeps, and verdict converged", max(sweeps), 2)
+    case("H08", "runs that do not say: no contact", silent, 0)
+    case("H08", "strain energy of the bodies, only moved, over that of a closure", max(strain), 1e-9)
 
 
 def test_a_parabola_that_touches_at_a_point_carries_next_to_nothing():
@@ -141,14 +269,15 @@ def block(*options, c=0, expect=0, gap="0.5"):
     """The upper layer, held on the left only, so free to move up and down, above the lower one"""
     scene = [word for word in layers(4, c, gap=gap).split() if word not in ("-upper_bc_top_u2", repr(-CLOSURE))]
     record = solve(*scene, *options, "-scene_probes A -A_probe_body upper -A_probe_point 2,2", expect=expect)
-    for key in "u1", "u2":
-        assert abs(record[f"probe.A.{key}"]) <= 4e3, (key, record[f"probe.A.{key}"])
+    assert max(abs(record[f"probe.A.{key}"]) for key in ("u1", "u2")) <= 4e3, record  # thousand lengths of the block
     return record
 
 
 def check_floating(record, body, motion):
-    assert record.status == 2 and record["verdict"] == "floating", (record.status, record.get("verdict"))
-    assert any(body in line and motion in line for line in record.stdout.splitlines()), record.stdout
+    named = any(body in line and motion in line for line in record.stdout.splitlines())
+    print(record.stdout)
+    unnamed = record.status != 2 or record["verdict"] != "floating" or not named
+    case("H09", "floating bodies without status 2 and a line with body and motion", unnamed, 0)
 
 
 def test_a_block_that_a_load_pushes_onto_its_support_finds_it():
@@ -179,7 +308,8 @@ def test_a_block_that_may_slide_is_refused():
     at = scene.index("-upper_bc_left_u1")
     del scene[at : at + 2]
     line = run_error(None, *scene, "-upper_bc_top_t2 -10")
-    assert line.startswith("abut: upper: nothing holds this body along x"), line
+    refused = line.startswith("abut: upper: nothing holds this body along x")
+    case("H09", "bodies that may slide and are not refused in a line", not refused, 0)
 
 
 def stack(*options):
@@ -206,6 +336,7 @@ def test_a_layer_that_nothing_reaches_from_below_or_above_is_named():
 
 def test_contact_grows_over_the_whole_side():
     """From a closure of 20 cm gaps on all is closed, and P = (4 closure - gap 4^3/3)/(H1/E1' + H2/E2' + theta) whatever the mesh"""
+    closed, falls = [], 0
     for c in 0, 0.05:
         edge, force = [0], [0]
         for closure in 1.366e-3, 5e-3, 10e-3, 15e-3, 20e-3, 25e-3, 40e-3:
@@ -216,9 +347,14 @@ def test_contact_grows_over_the_whole_side():
             assert record["sweeps"] <= 15 and record["check.balance"] < 1e-10
             if closure >= 20e-3:
                 exact = (4 * closure - GAP * 64 / 3) / (LAYERS + c / YOUNG)
-                assert relative(force[-1], exact) < 1e-8 and record["pair.mid.active"] == 33 and edge[-1] == 4, (force[-1], exact)
-        assert all(a < b for a, b in zip(force, force[1:])) and all(a <= b for a, b in zip(edge, edge[1:])), edge
+                closed.append(relative(force[-1], exact))
+                assert record["pair.mid.active"] == 33 and edge[-1] == 4, (force[-1], exact)
+        assert all(a < b for a, b in zip(force, force[1:])), force
+        falls += sum(a > b for a, b in zip(edge, edge[1:]))
     assert relative(force[3], 2368.09) < 1e-4 and abs(edge[3] - 2.9) < 1 / 8  # of another program, bilinear elements of the same size
+    case("H12", "force off the closed form where the whole side is closed", max(closed), 1e-8)
+    case("H12", "closures at which the contact ends before that of a smaller one", falls, 0)
+    case("H12", "force off another program's, closure of 10 gaps, c = 0.05", relative(force[3], 2368.09), 1e-4)
 
 
 def test_contact_everywhere_on_meshes_that_do_not_match():

@@ -3,7 +3,7 @@
 
 An independent program of order 2 on 320 x 3 cells gave P over Winkler's 1.000055, 0.999992 and 0.9999999 at H = 0.1, 0.01 and 0.001.
 """
-from abut import run
+from abut import case, run
 from test_gamma import said, with_slepc
 
 YOUNG, GAP, COMPLIANCE = 2.1e5, 1e-3, 2 * (1 - 0.3**2)
@@ -22,6 +22,7 @@ def layers(H, shape, order, cells, c):
 
 
 def test_thin_layers_are_a_winkler_foundation():
+    worst = [0, 0]
     for H, measured in MEASURED.items():
         for shape, order, cells, c in MESHES:
             record = run(None, *layers(H, shape, order, cells, c))
@@ -30,9 +31,12 @@ def test_thin_layers_are_a_winkler_foundation():
             middle = record["pair.mid.pressure_max"] / (GAP / compliance) - 1
             edge = record["pair.mid.contact_edge"]
             print(f"H {H}, {shape} {order}, c {c}: P {force:+.1e}, p0 {middle:+.1e}, a {edge}, {record['sweeps']} sweeps")
+            worst[order > 1] = max(worst[order > 1], abs(force))
             assert abs(force) < 1e-4 and abs(force - measured) < 3e-5, (H, shape, order, c, force)
             assert abs(middle) < 2e-4 and abs(edge - 1) < 0.3 * H + 0.01, (H, shape, order, c, middle, edge)
             assert record["sweeps"] <= 20 and record["check.balance"] < 1e-8
+    case("H14", "force off Winkler's, heights 0.1 to 0.001, order 1", worst[0], 1e-3)
+    case("H14", "the same, orders 2 and 3", worst[1], 1e-3)
 
 
 def relaxed(*options):
@@ -49,4 +53,4 @@ def test_the_range_of_the_relaxation_of_thin_layers():
 def test_the_range_from_the_eigenvalues_of_the_contact_zone():
     _, _, largest = with_slepc(" ".join(layers(0.1, "quad", 1, "160,4", 0.5)))
     print(2 / largest)
-    assert abs(2 / largest / 0.4325 - 1) < 1e-2
+    case("H14", "largest relaxation off 0.4325, height 0.1, theta = 0.05/E", abs(2 / largest / 0.4325 - 1), 1e-2)

@@ -188,6 +188,8 @@ START_TEST(cells_far_from_squares_are_no_worse_than_squares)
     {2,  1000}
   };
 
+  PetscReal worst[2] = {0., 0.}; /* of cells up to 100 times as long as high, and longer ones */
+
   for (PetscInt k = 0; k < 4; ++k) {
     const PetscInt n = meshes[k].n, m = meshes[k].aspect * n;
     const Errors   square = Solve(n, n, (AbutShape)_i, PETSC_FALSE);
@@ -200,10 +202,18 @@ START_TEST(cells_far_from_squares_are_no_worse_than_squares)
       printf("%s, %d by %d: energy %.4f %.4f, pressure %.4f; squares %.4f %.4f, %.4f; %d sweeps\n", _i ? "triangles" : "quads",
              (int)(along ? m : n), (int)(along ? n : m), (double)e.energy[0], (double)e.energy[1], (double)e.pressure,
              (double)square.energy[0], (double)square.energy[1], (double)square.pressure, (int)e.sweeps);
-      for (PetscInt b = 0; b < 2; ++b) ck_assert_double_lt(e.energy[b], 1.2 * square.energy[b]);
+      for (PetscInt b = 0; b < 2; ++b) {
+        ck_assert_double_lt(e.energy[b], 1.2 * square.energy[b]);
+        worst[k > 1] = PetscMax(worst[k > 1], e.energy[b] / square.energy[b]);
+      }
       ck_assert_double_lt(e.pressure, 1.5 * square.pressure);
     }
   }
+  CkCase("H13",
+         _i ? "energy error over that of right isosceles triangles, 10 and 100 times as long"
+            : "energy error over that of squares, aspect 10 and 100",
+         worst[0], 3.);
+  CkCase("H13", _i ? "the same, angles of 0.1 and 0.06 degrees" : "the same, aspect 573 and 1000", worst[1], 2.);
 }
 END_TEST
 
@@ -215,7 +225,9 @@ START_TEST(a_third_of_a_cell_of_disorder_costs_less_than_half_the_accuracy)
          (double)uneven.energy[1], (double)uneven.pressure, (double)even.energy[0], (double)even.energy[1], (double)even.pressure);
   for (PetscInt b = 0; b < 2; ++b) {
     ck_assert(uneven.energy[b] != even.energy[b]);
-    ck_assert_double_lt(uneven.energy[b], 1.5 * even.energy[b]);
+    CkCase("H13",
+           _i ? "triangles moved by 30 %, energy error over that of even ones" : "quads moved by 30 %, energy error over that of even ones",
+           uneven.energy[b] / even.energy[b], 1.5);
   }
   ck_assert_double_lt(uneven.pressure, 2. * even.pressure);
 }

@@ -108,3 +108,24 @@ def test_adapted_meshes_of_order_2_and_3_have_theirs():
         n, e, effectivity = adapt("zz", order, target)
         assert rate(n, e, 5) > 0.48 * order, (order, rate(n, e, 5))
         assert all(0.75 < ratio < 1.15 for ratio in effectivity[-3:]), effectivity
+
+
+def test_a_target_out_of_reach_ends_at_a_cap():
+    """Exit status 3, a verdict that names the cap and what to raise, and the forces of the last mesh, within 5 % of those of a fine one"""
+    wrong, over, off = 0, [], []
+    force = graded(3, 1e-6, 0.3)["pair.mid.force"]
+    for kind in "{type: doerfler, target: 1e-6", "{type: equal, target: 1e-6", "{type: threshold, threshold: 1e-6":
+        for cap, most in ("max_level", 5), ("max_unknowns", 3000):
+            levels = "" if cap == "max_level" else ", max_level: 28"
+            adaptor = f"adaptor: {kind}, {cap}: {most}{levels}}}\nestimator: {{type: zz}}\n"
+            record = press(adaptor=adaptor, expect=None)
+            line = record.stdout.splitlines()[-1]
+            named = record["verdict"] == {"max_level": "limit_level", "max_unknowns": "limit_unknowns"}[cap] and f"-adaptor_{cap}" in line
+            wrong += record.status != 3 or not named
+            reached = max(record[f"body.{body}.{'level_max' if cap == 'max_level' else 'unknowns'}"] for body in ("base", "punch"))
+            over.append(reached / most)
+            off.append(abs(record["pair.mid.force"] / force - 1))
+            print(kind, cap, record["verdict"], record["cycles"], record["unknowns"], reached, off[-1])
+    case("H17", "runs that do not end at their cap with status 3 and a line that names it", wrong, 0)
+    case("H17", "levels or unknowns of a body over the cap", max(over), 1)
+    case("H17", "force of the answer that is left off that of a fine mesh", max(off), 0.05)
