@@ -33,7 +33,8 @@ static PetscReal AbutPairEdgeOfGap_Private(AbutPair pair, const PetscReal g[], c
     ss += (s[k] - ms) * (s[k] - ms);
   }
   edge = sy != 0. ? ms - my * ss / sy : last;
-  return PetscMin(PetscMax(edge, last - h), last + h);
+  edge = PetscMin(PetscMax(edge, last - h), last + h);
+  return PetscMin(PetscMax(edge, pair->overlap[0]), pair->overlap[1]);
 }
 
 /* The edge beyond the closed node `in`, in the direction of step, as a distance from the first node: where the penetration changes sign, or
