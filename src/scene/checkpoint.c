@@ -57,40 +57,51 @@ static PetscErrorCode AbutSceneArchiveEdges_Private(AbutScene scene, AbutArchive
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The state at the beginning of a cycle, in or out; the interface has to be set up for a trace of its meshes */
-static PetscErrorCode AbutSceneArchive_Private(AbutScene scene, AbutArchive ar)
+/* Where the run stands; stays: its next cycle is on the same meshes */
+static PetscErrorCode AbutSceneArchiveNumbers_Private(AbutScene scene, AbutArchive ar, PetscBool *stays)
 {
   PetscReal number[2 + ABUT_TIMES] = {scene->work, scene->discretisation};
-  PetscInt  count[6] = {scene->nbodies, scene->npairs, scene->cycle + 1, scene->sweepsbefore, scene->settled, scene->x != NULL};
+  PetscInt  count[4]               = {scene->cycle + 1, scene->sweepsbefore, scene->settled, scene->x != NULL};
   PetscBool reads;
 
   PetscFunctionBegin;
   PetscCall(AbutArchiveReads(ar, &reads));
-  PetscCall(AbutArchiveInts(ar, "numbers of bodies and pairs", 2, count));
-  AbutCheckInput(count[0] == scene->nbodies && count[1] == scene->npairs, PetscObjectComm((PetscObject)scene),
+  for (PetscInt i = 0; i < ABUT_TIMES; ++i) number[2 + i] = scene->seconds[i];
+  PetscCall(AbutArchiveInts(ar, "cycle", 4, count));
+  PetscCall(AbutArchiveReals(ar, "work", 2 + ABUT_TIMES, number));
+  *stays = (PetscBool)count[3];
+  if (!reads) PetscFunctionReturn(PETSC_SUCCESS);
+  scene->cycle          = count[0];
+  scene->sweepsbefore   = count[1];
+  scene->settled        = (PetscBool)count[2];
+  scene->work           = number[0];
+  scene->discretisation = number[1];
+  for (PetscInt i = 0; i < ABUT_TIMES; ++i) {
+    scene->seconds[i] += number[2 + i];
+    scene->begun -= number[2 + i];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The state at the beginning of a cycle, in or out */
+static PetscErrorCode AbutSceneArchive_Private(AbutScene scene, AbutArchive ar)
+{
+  PetscInt  size[2] = {scene->nbodies, scene->npairs};
+  PetscBool stays   = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  PetscCall(AbutArchiveInts(ar, "numbers of bodies and pairs", 2, size));
+  AbutCheckInput(size[0] == scene->nbodies && size[1] == scene->npairs, PetscObjectComm((PetscObject)scene),
                  "restart: the checkpoint is of another scene: it has %" PetscInt_FMT " bodies and %" PetscInt_FMT
                  " pairs, this one %" PetscInt_FMT " and %" PetscInt_FMT,
-                 count[0], count[1], scene->nbodies, scene->npairs);
-  PetscCall(AbutArchiveInts(ar, "cycle", 4, count + 2));
-  for (PetscInt i = 0; i < ABUT_TIMES; ++i) number[2 + i] = scene->seconds[i];
-  PetscCall(AbutArchiveReals(ar, "work", 2 + ABUT_TIMES, number));
+                 size[0], size[1], scene->nbodies, scene->npairs);
+  PetscCall(AbutSceneArchiveNumbers_Private(scene, ar, &stays));
   for (PetscInt b = 0; b < scene->nbodies; ++b) PetscCall(AbutBodyArchive(scene->body[b], ar));
   PetscCall(AbutSceneArchiveEdges_Private(scene, ar));
-  if (reads) {
-    scene->cycle          = count[2];
-    scene->sweepsbefore   = count[3];
-    scene->settled        = (PetscBool)count[4];
-    scene->work           = number[0];
-    scene->discretisation = number[1];
-    for (PetscInt i = 0; i < ABUT_TIMES; ++i) {
-      scene->seconds[i] += number[2 + i];
-      scene->begun -= number[2 + i];
-    }
-  }
   PetscCall(AbutInterfaceArchive(scene->iface, ar));
-  if (count[5]) { /* the meshes stay */
+  if (stays) {
     PetscCall(AbutInterfaceSetUp(scene->iface));
-    if (reads) {
+    if (!scene->x) { /* it is being read */
       PetscCall(AbutInterfaceCreateVec(scene->iface, &scene->x));
       PetscCall(AbutInterfaceSetSNES(scene->iface, scene->snes));
     }
