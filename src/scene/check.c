@@ -15,8 +15,10 @@ static const struct {
   [ABUT_CHECK_PENETRATION] = {"check.penetration",     PETSC_TRUE }
 };
 
-/* How many times its residual, a measure of energy, a loop may leave at a node; measured were up to 10 */
+/* What a loop may leave at a node: so many times its residual, which is a measure of energy, measured were up to 10; but slender bodies with
+   a residual of 1e-8 were measured with 1e-5 at a node */
 #define ABUT_CHECK_RESIDUALS 30.
+#define ABUT_CHECK_NODE      1e-4
 
 /* Every check is over all bodies and pairs: the largest counts */
 void AbutSceneAddCheck_Private(AbutScene scene, AbutCheck check, PetscReal value)
@@ -40,7 +42,7 @@ PetscErrorCode AbutSceneEndChecks_Private(AbutScene scene, PetscBool last, Petsc
   *consistent = PETSC_TRUE;
   if (scene->npairs) PetscCall(AbutInterfaceGetResidual(scene->iface, &residual, &pressure));
   for (PetscInt i = 0; i < n; ++i) {
-    const PetscReal loop = AbutChecks[i].ofloop ? ABUT_CHECK_RESIDUALS * PetscMax(residual, pressure) : 0.;
+    const PetscReal loop = AbutChecks[i].ofloop ? PetscMax(ABUT_CHECK_NODE, ABUT_CHECK_RESIDUALS * PetscMax(residual, pressure)) : 0.;
     const PetscReal most = PetscMax(scene->consistent, loop);
 
     PetscCall(AbutRecorderSetReal(scene->recorder, AbutChecks[i].key, scene->check[i]));

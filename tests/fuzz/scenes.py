@@ -80,7 +80,7 @@ def judge(abut, options, limit):
         return verdict, f"has verdict {verdict} and exit status {result.returncode}", said
     if not result.returncode:
         loop = 30 * float(record["residual.loop"])
-        bad = [key for key in CHECKS if float(record[f"check.{key}"]) > (max(1e-6, loop) if key in CHECKS[-2:] else 1e-6)]
+        bad = [key for key in CHECKS if float(record[f"check.{key}"]) > (max(1e-4, loop) if key in CHECKS[-2:] else 1e-6)]
         if bad:
             return verdict, f"has exit status 0, and fails {', '.join(bad)}", said
     return verdict, None, said
