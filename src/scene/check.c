@@ -15,8 +15,8 @@ static const struct {
   [ABUT_CHECK_PENETRATION] = {"check.penetration",     PETSC_TRUE }
 };
 
-/* What a loop may leave at a node: so many times its residual, which is a measure of energy, measured were up to 10; but slender bodies with
-   a residual of 1e-8 were measured with 1e-5 at a node */
+/* What a loop may leave at a node: so many times its residual, which is a measure of energy, measured were up to 10; but slender bodies
+   with a residual of 1e-8 were measured with 1e-5 at a node */
 #define ABUT_CHECK_RESIDUALS 30.
 #define ABUT_CHECK_NODE      1e-4
 
