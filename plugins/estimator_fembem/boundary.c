@@ -24,7 +24,7 @@ PetscErrorCode FembemBoundaryCreate(MPI_Comm comm, const AbutBoundary *given, Pe
   for (PetscInt i = 0; i < b->n; ++i) b->previous[b->next[i]] = i;
   for (PetscInt i = 0; i < b->nnodes; ++i) {
     b->z[i] = PointAt(given->x, i);
-    b->u[i] = PointAt(given->u, i) - PointAt(given->u, 0); /* a translation has no stress, only the round-off of one */
+    b->u[i] = PointAt(given->u, i);
   }
   for (PetscInt i = 0; i < (b->order + 1) * b->n; ++i) b->t[i] = PointAt(given->traction, i);
   PetscFunctionReturn(PETSC_SUCCESS);
