@@ -62,6 +62,7 @@ PETSC_EXTERN PetscErrorCode AbutPairGetState(AbutPair, const PetscReal[], const 
 typedef struct {
   PetscReal x[2];   /* where the pressure is largest on it */
   PetscReal length; /* of the element */
+  PetscReal part;   /* this length over that of the contact, the sum of D_i over active nodes */
   PetscReal last;   /* coefficient of the pressure on it, relative to the largest pressure of the pair: see AbutPairGetPeaks() */
 } AbutPeak;
 PETSC_EXTERN PetscErrorCode AbutPairGetPeaks(AbutPair, const PetscReal[], PetscReal, PetscInt, PetscInt *, AbutPeak[]);

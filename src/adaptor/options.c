@@ -121,9 +121,8 @@ PetscErrorCode AbutAdaptorSetFromOptions(AbutAdaptor adaptor)
   PetscCall(AbutOptionsReal(PetscOptionsObject, "-adaptor_peak", "last coefficient of the pressure on elements that hold the largest",
                             &adaptor->peak, NULL));
   AbutCheckInput(adaptor->peak == 0. || (adaptor->peak >= 1e-8 && adaptor->peak < 1.), comm,
-                 "adaptor_peak: %g is not a part of the largest pressure; give a number from 1e-8 to 1, for example 1e-4, or 0 to leave it "
-                 "to "
-                 "the energy",
+                 "adaptor_peak: %g is not a part of the largest pressure; give a number from 1e-8 to 1, for example 1e-4, or 0 to "
+                 "leave it to the energy",
                  (double)adaptor->peak);
   PetscTryTypeMethod(adaptor, setfromoptions, PetscOptionsObject);
   PetscOptionsEnd();
@@ -250,7 +249,7 @@ PetscErrorCode AbutAdaptorSettles(AbutAdaptor adaptor, PetscBool *settles)
 }
 
 /*@
-   AbutAdaptorGetPeak - The relative error that the largest pressure of each pair may have
+   AbutAdaptorGetPeak - How large the last coefficient of the pressure may be on elements that hold the largest one, relative to it
 
    Not Collective
 

@@ -45,8 +45,10 @@ static PetscErrorCode AbutPairLastCoefficient_Private(AbutPair pair, const Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The largest value of the function on element e, and its place: between the neighbours of the largest node, by golden sections */
-static PetscErrorCode AbutPairElementTop_Private(AbutPair pair, const PetscReal q[], PetscInt e, PetscReal *value, PetscReal *at)
+/* The largest value of the function on element e, and its place: between the neighbours of the largest node, by golden sections, unless the
+   nodes are below half of what is enough: no polynomial of these orders rises that far above its nodes */
+static PetscErrorCode AbutPairElementTop_Private(AbutPair pair, const PetscReal q[], PetscInt e, PetscReal enough, PetscReal *value,
+                                                 PetscReal *at)
 {
   const PetscReal  golden = 0.6180339887498949;
   const PetscInt   order  = pair->order[0];
@@ -62,7 +64,7 @@ static PetscErrorCode AbutPairElementTop_Private(AbutPair pair, const PetscReal 
   *at    = z[top];
   low    = z[PetscMax(top - 1, 0)];
   high   = z[PetscMin(top + 1, order)];
-  for (PetscInt step = 0; order > 1 && step < 40; ++step) {
+  for (PetscInt step = 0; order > 1 && *value >= 0.5 * enough && step < 40; ++step) {
     PetscReal f[2] = {0., 0.}, x[2] = {high - golden * (high - low), low + golden * (high - low)};
 
     for (PetscInt k = 0; k < 2; ++k) {
@@ -87,11 +89,9 @@ PetscErrorCode AbutPairGetLargest_Private(AbutPair pair, const PetscReal q[], Pe
   for (PetscInt i = 0; i < pair->n[pair->which]; ++i) node = PetscMax(node, q[i]);
   *largest = node;
   for (PetscInt first = 0; first + order < pair->n[pair->which]; first += order) {
-    PetscReal value, at, high = 0.;
+    PetscReal value, at;
 
-    for (PetscInt i = first; i <= first + order; ++i) high = PetscMax(high, q[i]);
-    if (high < 0.5 * node) continue; /* no polynomial of these orders rises that far above its nodes */
-    PetscCall(AbutPairElementTop_Private(pair, q, first / order, &value, &at));
+    PetscCall(AbutPairElementTop_Private(pair, q, first / order, node, &value, &at));
     *largest = PetscMax(*largest, value);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -146,23 +146,26 @@ PetscErrorCode AbutPairGetPeaks(AbutPair pair, const PetscReal p[], PetscReal to
 {
   const AbutSide *m     = pair->nodes[pair->which];
   const PetscInt  order = pair->order[0];
-  PetscReal      *q, largest;
+  PetscReal      *q, largest, enough, contact = 0.;
 
   PetscFunctionBegin;
   *n = 0;
+  for (PetscInt i = 0; i < m->n; ++i) contact += p[i] > 0. ? pair->D[i] : 0.;
   PetscCall(PetscMalloc1(m->n, &q));
   PetscCall(AbutPairGetReading_Private(pair, p, q));
   PetscCall(AbutPairGetLargest_Private(pair, q, &largest));
+  enough = (1. - tolerance) * largest;
   for (PetscInt first = 0; largest > 0. && first + order < m->n && *n < max; first += order) {
     const PetscReal  from = AbutPairPlace_Private(pair, first), to = AbutPairPlace_Private(pair, first + order);
     const PetscReal *a = m->x + 2 * first, *b = m->x + 2 * (first + order);
     PetscReal        last = 0., top, at;
 
-    PetscCall(AbutPairElementTop_Private(pair, q, first / order, &top, &at));
-    if (top < (1. - tolerance) * largest || AbutPairAtCorner_Private(pair, from, to)) continue;
+    PetscCall(AbutPairElementTop_Private(pair, q, first / order, enough, &top, &at));
+    if (top < enough || AbutPairAtCorner_Private(pair, from, to)) continue;
     PetscCall(AbutPairLastCoefficient_Private(pair, q, first / order, &last));
     if (last <= tolerance * largest) continue;
     peak[*n].length = to - from;
+    peak[*n].part   = (to - from) / contact;
     peak[*n].last   = last / largest;
     for (PetscInt d = 0; d < 2; ++d) peak[*n].x[d] = 0.5 * ((1. - at) * a[d] + (1. + at) * b[d]);
     ++*n;

@@ -35,8 +35,8 @@ static PetscErrorCode AbutPairReadPressures_Private(AbutPair pair, const PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Displacement, or gap where nothing moves */
-static PetscReal AbutPairLargest_Private(AbutPair pair, const PetscReal u1[], const PetscReal u2[])
+/* The largest displacement, or gap where nothing moves */
+static PetscReal AbutPairScale_Private(AbutPair pair, const PetscReal u1[], const PetscReal u2[])
 {
   PetscReal largest = 0., gap = 0.;
 
@@ -96,7 +96,7 @@ PetscErrorCode AbutPairGetState(AbutPair pair, const PetscReal u1[], const Petsc
   if (largest > 0.) {
     state->complementarity /= (compliance[0] + compliance[1] + pair->theta) * PetscSqr(largest);
     state->excess /= (compliance[0] + compliance[1] + pair->theta) * largest;
-  } else if (state->excess > 0.) state->excess /= AbutPairLargest_Private(pair, u1, u2); /* overlapping, and no force between them */
+  } else if (state->excess > 0.) state->excess /= AbutPairScale_Private(pair, u1, u2); /* overlapping, and no force between them */
   state->contact_edge = AbutPairEdge_Private(pair, g, p);
   PetscCall(PetscMalloc2(pair->n[0], &f[0], pair->n[1], &f[1]));
   PetscCall(AbutPairComputeForce(pair, p, f[0], f[1]));

@@ -103,7 +103,8 @@ static PetscErrorCode AbutRecorderCollectPair_Private(AbutInterface iface, Petsc
    The columns are pair, side, s, x, y, u_n, gap, pressure; s is the arc length from the first node of the side, lengths are in the
    unit of the scene. Rows with side 1 or 2 hold u_n, the displacement along the outward normal, at the nodes of that side; rows with
    side `pressure` hold the gap and the nodal pressure of the dual-mortar method (stress unit) at the nodes that carry one; the consistent
-   pressure, whose largest value is that of the record from order 2 on, is `AbutPairRecoverPressure()`. The other cells are empty.
+   pressure, whose polynomials have the largest value of the record from order 2 on, is `AbutPairRecoverPressure()`. The other cells are
+   empty.
 
 .seealso: `AbutInterfaceGetTrace()`, `AbutInterfaceGetPressure()`, `AbutPairGetPressureNodes()`, `AbutRecorderSetFromOptions()`
 @*/

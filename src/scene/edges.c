@@ -4,6 +4,18 @@
 
 #define ABUT_EDGES_MAX 64 /* of a pair; more are not looked after */
 
+/* The edges of one pair, as the last solve found them */
+static PetscErrorCode AbutSceneGetEdges_Private(AbutScene scene, PetscInt i, PetscInt max, PetscInt *n, PetscReal x[][2])
+{
+  const PetscReal *u[2], *p;
+
+  PetscFunctionBegin;
+  for (PetscInt s = 0; s < 2; ++s) PetscCall(AbutInterfaceGetTrace(scene->iface, i, s, &u[s]));
+  PetscCall(AbutInterfaceGetPressure(scene->iface, i, &p));
+  PetscCall(AbutPairGetEdges(scene->pair[i], u[0], u[1], p, max, n, x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Keeps the edges that the last solve found, before the meshes change */
 PetscErrorCode AbutSceneKeepEdges_Private(AbutScene scene)
 {
@@ -13,13 +25,10 @@ PetscErrorCode AbutSceneKeepEdges_Private(AbutScene scene)
   for (PetscInt i = 0; i < scene->npairs; ++i) scene->tied[i] = 0;
   PetscCall(PetscMalloc1(ABUT_EDGES_MAX * scene->npairs, &scene->edge));
   for (PetscInt i = 0; i < scene->npairs; ++i) {
-    const PetscReal *u[2], *p;
-    PetscReal        x[ABUT_EDGES_MAX][2];
-    PetscInt         n;
+    PetscReal x[ABUT_EDGES_MAX][2];
+    PetscInt  n;
 
-    for (PetscInt s = 0; s < 2; ++s) PetscCall(AbutInterfaceGetTrace(scene->iface, i, s, &u[s]));
-    PetscCall(AbutInterfaceGetPressure(scene->iface, i, &p));
-    PetscCall(AbutPairGetEdges(scene->pair[i], u[0], u[1], p, ABUT_EDGES_MAX, &n, x));
+    PetscCall(AbutSceneGetEdges_Private(scene, i, ABUT_EDGES_MAX, &n, x));
     for (PetscInt e = 0; e < n; ++e) {
       AbutContactEdge *edge = &scene->edge[scene->nedges++];
 
@@ -176,13 +185,10 @@ static PetscErrorCode AbutSceneHasEdges_Private(AbutScene scene, PetscBool *has)
   PetscFunctionBegin;
   *has = PETSC_FALSE;
   for (PetscInt i = 0; i < scene->npairs && !*has; ++i) {
-    const PetscReal *u[2], *p;
-    PetscReal        x[1][2];
-    PetscInt         n;
+    PetscReal x[1][2];
+    PetscInt  n;
 
-    for (PetscInt s = 0; s < 2; ++s) PetscCall(AbutInterfaceGetTrace(scene->iface, i, s, &u[s]));
-    PetscCall(AbutInterfaceGetPressure(scene->iface, i, &p));
-    PetscCall(AbutPairGetEdges(scene->pair[i], u[0], u[1], p, 1, &n, x));
+    PetscCall(AbutSceneGetEdges_Private(scene, i, 1, &n, x));
     *has = (PetscBool)(n > 0);
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -256,14 +256,10 @@ PetscErrorCode AbutSceneSetFromOptions(AbutScene scene)
   PetscCall(AbutSceneFreeNames_Private(npairs, pairs));
   PetscCall(AbutSceneFreeNames_Private(nprobes, probes));
   PetscCall(AbutInterfaceCreate(comm, scene->nbodies, scene->body, scene->npairs, scene->pair, &scene->iface));
-  if (scene->npairs) PetscCall(AbutSceneSolverFromOptions_Private(scene));
   PetscCall(AbutSceneErrorFromOptions_Private(scene, (PetscBool)(adapts || hastol), estimates));
+  if (scene->npairs) PetscCall(AbutSceneSolverFromOptions_Private(scene));
   PetscCall(AbutSceneSetTolerance_Private(scene));
-  if (scene->npairs && scene->adaptor && !scene->interleave) {
-    PetscCall(SNESDestroy(&scene->snes)); /* now that its tolerance is known */
-    PetscCall(AbutSceneSolverFromOptions_Private(scene));
-    PetscCall(AbutSceneCyclesFromOptions_Private(scene));
-  }
+  if (scene->npairs && scene->adaptor && !scene->interleave) PetscCall(AbutSceneCyclesFromOptions_Private(scene));
   AbutCheckInput(!scene->interleave || scene->adaptor, comm,
                  "scene_interleave: the scene has no adaptor; give adaptor_type, or leave scene_interleave out");
   PetscCall(AbutSceneCheckContactKeys_Private(scene));

@@ -35,7 +35,6 @@ PetscErrorCode AbutSceneMarkPeaks_Private(AbutScene scene, AbutBody body, PetscB
   PetscCall(AbutInterfaceGetResidual(scene->iface, &residual, &pressure));
   for (PetscInt i = 0; i < scene->npairs; ++i) {
     const PetscReal *p;
-    AbutPairState    s;
     AbutPeak        *peak;
     AbutBody         bodies[2];
     PetscInt         sides[2], nodes[2], n;
@@ -45,10 +44,9 @@ PetscErrorCode AbutSceneMarkPeaks_Private(AbutScene scene, AbutBody body, PetscB
     PetscCall(AbutPairGetSizes(scene->pair[i], nodes));
     PetscCall(PetscMalloc1(PetscMax(nodes[0], nodes[1]), &peak));
     PetscCall(AbutInterfaceGetPressure(scene->iface, i, &p));
-    PetscCall(AbutInterfaceGetPairState(scene->iface, i, &s));
     PetscCall(AbutPairGetPeaks(scene->pair[i], p, tolerance, PetscMax(nodes[0], nodes[1]), &n, peak));
     for (PetscInt k = 0; k < n; ++k) {
-      if (peak[k].last <= ABUT_PEAK_NOISE * residual * s.contact_length / peak[k].length) continue;
+      if (peak[k].last <= ABUT_PEAK_NOISE * residual / peak[k].part) continue;
       for (PetscInt side = 0; side < 2; ++side)
         if (bodies[side] == body) PetscCall(AbutSceneMarkPeak_Private(body, sides[side], &peak[k], mark));
     }

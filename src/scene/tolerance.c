@@ -66,7 +66,7 @@ PetscErrorCode AbutSceneSetTolerance_Private(AbutScene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* As far as the scene is known: the adaptor comes after the first loop is made */
+/* What the loop is to leave at most, unless the user says otherwise */
 PetscReal AbutSceneLoopTolerance_Private(AbutScene scene)
 {
   const PetscReal tolerance = scene->tol > 0. ? ABUT_TOL_LOOP * PetscSqr(scene->tol) : 1e-8;

@@ -19,11 +19,12 @@ typedef struct {
 #define ABUT_ARCHIVE_ORDER 0x0102030405060708
 
 struct _n_AbutArchive {
-  MPI_Comm comm;
-  char    *file; /* what is read; NULL while it is filled */
-  char    *key;  /* the option that names it */
-  char    *byte;
-  size_t   size, room, at;
+  MPI_Comm    comm;
+  PetscMPIInt rank;
+  char       *file; /* what is read; NULL while it is filled */
+  char       *key;  /* the option that names it */
+  char       *byte;
+  size_t      size, room, at;
 };
 
 /* FNV-1a of 64 bits, http://www.isthe.com/chongo/tech/comp/fnv */
@@ -55,6 +56,7 @@ PetscErrorCode AbutArchiveCreate(MPI_Comm comm, AbutArchive *ar)
   PetscFunctionBegin;
   PetscCall(PetscNew(ar));
   (*ar)->comm = comm;
+  PetscCallMPI(MPI_Comm_rank(comm, &(*ar)->rank));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -113,21 +115,19 @@ PetscErrorCode AbutArchiveOpen(MPI_Comm comm, const char key[], const char path[
   char        wrong[256] = "";
   AbutArchive a;
   PetscInt    size;
-  PetscMPIInt rank;
 
   PetscFunctionBegin;
   PetscCall(AbutArchiveCreate(comm, &a));
   PetscCall(PetscStrallocpy(path, &a->file));
   PetscCall(PetscStrallocpy(key, &a->key));
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  if (!rank) PetscCall(AbutArchiveLoad_Private(path, a, wrong, sizeof(wrong)));
+  if (!a->rank) PetscCall(AbutArchiveLoad_Private(path, a, wrong, sizeof(wrong)));
   PetscCallMPI(MPI_Bcast(wrong, sizeof(wrong), MPI_CHAR, 0, comm));
   if (wrong[0]) PetscCall(AbutArchiveDestroy(&a));
   AbutCheckInput(!wrong[0], comm, "%s: %s %s; give one that -checkpoint has written", key, path, wrong);
   size = (PetscInt)a->size;
   PetscCallMPI(MPI_Bcast(&size, 1, MPIU_INT, 0, comm));
   a->size = (size_t)size;
-  if (rank) PetscCall(PetscMalloc1(a->size + 1, &a->byte));
+  if (a->rank) PetscCall(PetscMalloc1(a->size + 1, &a->byte));
   PetscCallMPI(MPI_Bcast(a->byte, (PetscMPIInt)a->size, MPI_CHAR, 0, comm));
   *ar = a;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -188,11 +188,8 @@ PetscErrorCode AbutArchiveReads(AbutArchive ar, PetscBool *reads)
 /* Bytes into the archive, on rank 0 */
 static PetscErrorCode AbutArchivePut_Private(AbutArchive ar, size_t n, const void *from)
 {
-  PetscMPIInt rank;
-
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_rank(ar->comm, &rank));
-  if (rank || !n) PetscFunctionReturn(PETSC_SUCCESS);
+  if (ar->rank || !n) PetscFunctionReturn(PETSC_SUCCESS);
   if (ar->size + n > ar->room) {
     ar->room = 2 * (ar->size + n);
     PetscCall(PetscRealloc(ar->room, &ar->byte));
