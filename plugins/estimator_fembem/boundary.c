@@ -30,6 +30,26 @@ PetscErrorCode FembemBoundaryCreate(MPI_Comm comm, const AbutBoundary *given, Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Takes off the rigid motion mean + i*turn*(z - center) that is nearest to the displacement of the nodes. It has no stress, but the errors
+   of quadrature and treecode would grow with it: a body that contact alone holds may lie far from where it was drawn. */
+void FembemTakeOffRigidMotion(FembemBoundary *b)
+{
+  PetscComplex mean = 0., center = 0.;
+  PetscReal    arms = 0., turn = 0.;
+
+  for (PetscInt i = 0; i < b->nnodes; ++i) {
+    mean += b->u[i] / b->nnodes;
+    center += b->z[i] / b->nnodes;
+  }
+  for (PetscInt i = 0; i < b->nnodes; ++i) {
+    const PetscComplex arm = PetscConjComplex(b->z[i] - center);
+
+    arms += PetscSqr(PetscAbsComplex(arm));
+    turn += PetscImaginaryPartComplex(arm * (b->u[i] - mean));
+  }
+  for (PetscInt i = 0; i < b->nnodes; ++i) b->u[i] -= mean + turn / arms * PETSC_i * (b->z[i] - center);
+}
+
 PetscErrorCode FembemBoundaryDestroy(FembemBoundary *b)
 {
   PetscFunctionBegin;

@@ -64,6 +64,7 @@ static PetscErrorCode AbutEstimatorEstimate_Fembem(AbutEstimator est, AbutBody b
   PetscCall(AbutBodyGetMaterial(body, &young, &poisson));
   PetscCall(AbutBodyGetBoundary(body, &given));
   PetscCall(FembemBoundaryCreate(comm, given, young, poisson, &boundary));
+  FembemTakeOffRigidMotion(&boundary);
   PetscCall(FembemRecoverTractions(&boundary));
   if (WantsGalerkin(fembem, given)) {
     AbutCheckInput(given->nnodes <= fembem->max_elements, comm,
@@ -72,6 +73,7 @@ static PetscErrorCode AbutEstimatorEstimate_Fembem(AbutEstimator est, AbutBody b
                    " of order 1; raise it (memory and time grow with the square and the cube), or give -estimator_fembem_solve none",
                    given->n, given->order, fembem->max_elements);
     PetscCall(FembemSolveGalerkin(&boundary, &unknowns));
+    FembemTakeOffRigidMotion(&boundary); /* where no displacement is given, the solution has any */
   }
   PetscCall(AbutEstimatorSetUnknowns(est, unknowns));
   PetscCall(FembemStressCreate(&boundary, TreeTolerance(fembem, given->order), &fembem->stress));

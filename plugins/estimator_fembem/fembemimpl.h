@@ -35,6 +35,7 @@ static inline PetscReal FembemLength(const FembemBoundary *b, PetscInt e)
 }
 
 PETSC_INTERN PetscErrorCode FembemBoundaryCreate(MPI_Comm, const AbutBoundary *, PetscReal, PetscReal, FembemBoundary *);
+PETSC_INTERN void           FembemTakeOffRigidMotion(FembemBoundary *);
 PETSC_INTERN PetscErrorCode FembemBoundaryDestroy(FembemBoundary *);
 
 /* Tractions that hold nodal forces in balance, where a displacement or a contact is prescribed */

@@ -10,42 +10,10 @@ struct _n_FembemStress {
   PetscReal     kappa;
 };
 
-/* The rigid motion u = mean + i*turn*(z - center) nearest to the displacement of the nodes. It has no stress, but the error of the treecode
-   would grow with it: a body that contact alone holds may lie far from where it was drawn. */
-typedef struct {
-  PetscComplex mean, center;
-  PetscReal    turn;
-} RigidMotion;
-
-static inline PetscComplex Strained(const FembemBoundary *b, const RigidMotion *m, PetscInt i)
-{
-  return b->u[i] - m->mean - m->turn * PETSC_i * (b->z[i] - m->center);
-}
-
-static RigidMotion FindRigidMotion(const FembemBoundary *b)
-{
-  RigidMotion m    = {0., 0., 0.};
-  PetscReal   arms = 0., turn = 0.;
-
-  for (PetscInt i = 0; i < b->nnodes; ++i) {
-    m.mean += b->u[i] / b->nnodes;
-    m.center += b->z[i] / b->nnodes;
-  }
-  for (PetscInt i = 0; i < b->nnodes; ++i) {
-    const PetscComplex arm = PetscConjComplex(b->z[i] - m.center);
-
-    arms += PetscSqr(PetscAbsComplex(arm));
-    turn += PetscImaginaryPartComplex(arm * (b->u[i] - m.mean));
-  }
-  m.turn = turn / arms;
-  return m;
-}
-
-/* tolerance 0 asks for the direct sum */
+/* tolerance 0 asks for the direct sum; the error of the treecode grows with a rigid motion */
 PetscErrorCode FembemStressCreate(const FembemBoundary *b, PetscReal tolerance, FembemStress *stress)
 {
-  const RigidMotion m = FindRigidMotion(b);
-  FembemStress      s;
+  FembemStress s;
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&s));
@@ -55,7 +23,7 @@ PetscErrorCode FembemStressCreate(const FembemBoundary *b, PetscReal tolerance, 
   for (PetscInt i = 0; i < b->n; ++i) {
     PetscComplex u[ABUT_SIDE_NODES_MAX];
 
-    for (PetscInt k = 0; k <= b->order; ++k) u[k] = Strained(b, &m, AbutBoundaryNode(b, i, k));
+    for (PetscInt k = 0; k <= b->order; ++k) u[k] = b->u[AbutBoundaryNode(b, i, k)];
     FembemSourceSet(&s->source[i], &b->basis, FembemStart(b, i), FembemStart(b, b->next[i]), u, &b->t[(b->order + 1) * i], b->mat);
   }
   if (tolerance > 0. && b->n >= FEMBEM_TREE_FROM) PetscCall(FembemTreeCreate(b->n, s->source, tolerance, &s->tree));

@@ -10,7 +10,7 @@ typedef struct {
 
 #define ABUT_OCTAVES 100   /* factors of two below the largest square within which the bound is sought: what is smaller holds nothing */
 #define ABUT_BISECT  1e-7  /* relative width at which the bound is known */
-#define ABUT_TIE     1e-6  /* cells that differ by less, relative, go together: those of symmetric meshes differ by round-off */
+#define ABUT_TIE     1e-3  /* cells that differ by less, relative, go together: mirror images differ by what loop and treecode leave */
 #define ABUT_SLACK   1e-10 /* of the sum: does not depend on its order */
 
 /* The largest bound such that the cells not below it hold the part */

@@ -16,7 +16,7 @@ static PetscReal Different(PetscInt body, PetscInt i, PetscInt j)
 
 static PetscReal Symmetric(PETSC_UNUSED PetscInt body, PetscInt i, PetscInt j)
 {
-  return Different(0, PetscMin(i, 7 - i), j) * (1. + 1e-13 * i);
+  return Different(0, PetscMin(i, 7 - i), j) * (1. + 1e-5 * i);
 }
 
 static PetscReal Alike(PETSC_UNUSED PetscInt body, PETSC_UNUSED PetscInt i, PETSC_UNUSED PetscInt j)

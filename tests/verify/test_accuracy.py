@@ -52,7 +52,7 @@ def test_references():
 
 
 def test_order_1():
-    reaches((1e-4, 1e-3), 9500, 1, "-estimator_type fembem -adaptor_bulk 0.7 -adaptor_follow no")
+    reaches((1e-4, 1e-3), 9500, 1, "-estimator_type fembem -adaptor_bulk 0.5 -adaptor_follow no")
 
 
 def test_order_2():

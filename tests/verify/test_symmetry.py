@@ -42,6 +42,7 @@ def skew(field):
 KINDS = [
     *(ADAPT.format("threshold", "threshold 0.1", estimator) for estimator in ("zz", "residual", "fembem")),
     ADAPT.format("doerfler", "target 0.003", "zz") + " -lower_mesh_order 2 -upper_mesh_order 2",
+    ADAPT.format("doerfler", "target 0.02", "fembem"),
 ]
 
 
