@@ -55,6 +55,7 @@ PETSC_EXTERN PetscErrorCode AbutPairComputeForce(AbutPair, const PetscReal[], Pe
 PETSC_EXTERN PetscErrorCode AbutPairComputeSupport(AbutPair, PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutPairComputeWinkler(AbutPair, PetscReal[], PetscReal[], PetscBool *);
 PETSC_EXTERN PetscErrorCode AbutPairGetGap(AbutPair, const PetscReal[2], PetscReal *);
+PETSC_EXTERN PetscErrorCode AbutPairGetOverlap(AbutPair, PetscReal *, PetscReal[2]);
 PETSC_EXTERN PetscErrorCode AbutPairGetPressureNodes(AbutPair, PetscInt *, PetscInt *, const PetscReal *[], const PetscReal *[]);
 PETSC_EXTERN PetscErrorCode AbutPairRecoverPressure(AbutPair, const PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutPairGetState(AbutPair, const PetscReal[], const PetscReal[], const PetscReal[], AbutPairState *);

@@ -62,6 +62,44 @@ PetscErrorCode AbutPairCheck(AbutPair pair)
 }
 
 /*@C
+   AbutPairGetOverlap - How deep the sides of a pair lie in each other before anything moves
+
+   Not Collective
+
+   Input Parameter:
+.  pair - the pair, set up
+
+   Output Parameters:
++  depth - the largest of what the gap is below 0 at the nodes that carry pressures, length; 0 where the sides only touch
+-  x     - where, not set if they only touch
+
+   Level: intermediate
+
+   Note:
+   Contact pushes the bodies apart by it, which is what a scene with an interference fit wants and most others do not.
+
+.seealso: `AbutPairGetGap()`, `AbutPairComputePenetration()`
+@*/
+PetscErrorCode AbutPairGetOverlap(AbutPair pair, PetscReal *depth, PetscReal x[2])
+{
+  const AbutSide *side = pair->nodes[pair->which];
+  const PetscReal near = 1e-9 * AbutPairPlace_Private(pair, side->n - 1);
+
+  PetscFunctionBegin;
+  *depth = 0.;
+  for (PetscInt i = 0; i < side->n; ++i) {
+    PetscReal gap;
+
+    if (pair->D[i] <= 0.) continue;
+    PetscCall(AbutPairGetGap(pair, side->x + 2 * i, &gap));
+    if (-gap <= PetscMax(near, *depth)) continue;
+    *depth = -gap;
+    PetscCall(PetscArraycpy(x, side->x + 2 * i, 2));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
    AbutPairComputePressure - Nodal pressures of the penalty law, p = max(0, u_n1 + u_n2 - f)/theta, for given traces: eqs. (15), (20) of the
    paper
 

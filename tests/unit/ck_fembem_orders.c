@@ -252,14 +252,14 @@ START_TEST(fields_up_to_the_order_are_exact)
 END_TEST
 
 /* The largest error of the stress, relative, at distances from 1e-1 to 1e-8 of the element abreast of its middle, on the diagonal of a
-   corner, and beside elements 100 times as small; on an element there is a number, which none is at the nodes between them */
+   corner, and beside elements 100 times as small; at nodes it is that of a point beside them */
 START_TEST(the_stress_is_exact_up_to_the_boundary_and_a_number_on_it)
 {
   const Field             field = {2., .25, PolynomialStress, PolynomialDisplacement};
   const PetscReal         lo[2] = {0., 0.}, hi[2] = {1., 1.};
   const PetscInt          m[4]               = {1, 100, 2, 5};
   const AbutConditionType given_traction[16] = {ABUT_TRACTION};
-  static PetscReal        worst[2]           = {0., 0.};
+  static PetscReal        worst[3]           = {0., 0., 0.};
   static PetscInt         bad                = 0;
   PetscReal               largest            = 0., small, end;
   AbutBoundary            given;
@@ -289,11 +289,16 @@ START_TEST(the_stress_is_exact_up_to_the_boundary_and_a_number_on_it)
     }
   }
   {
-    const PetscReal x[8] = {.3, 0., 1., .5 * small, .5 * (1. + end), 1., 0., .999};
-    PetscReal       s[12];
+    const PetscReal x[14] = {.3, 0., 1., .5 * small, .5 * (1. + end), 1., 0., .999, 1., small, 1., 1., 0., 0.};
+    PetscReal       s[21], exact[3];
 
-    CkOk(FembemStressEvaluate(stress, 4, x, s));
-    for (PetscInt i = 0; i < 12; ++i) bad += PetscIsInfOrNanReal(s[i]);
+    CkOk(FembemStressEvaluate(stress, 7, x, s));
+    for (PetscInt i = 0; i < 21; ++i) {
+      bad += PetscIsInfOrNanReal(s[i]);
+      if (i < 12) continue; /* nodes: between a short and a long element, and corners */
+      if (i % 3 == 0) PolynomialStress(x + 2 * (i / 3), exact);
+      worst[2] = PetscMax(worst[2], PetscAbsReal(s[i] - exact[i % 3]) / largest);
+    }
   }
   CkOk(FembemStressDestroy(&stress));
   CkOk(FembemBoundaryDestroy(&b));
@@ -303,7 +308,8 @@ START_TEST(the_stress_is_exact_up_to_the_boundary_and_a_number_on_it)
   if (_i < ABUT_ORDER_MAX) return;
   Say("V15", "the same stresses up to a hundredth of an element from the boundary", worst[0], 1e-6);
   Say("H20", "error of the stress 1e-1 to 1e-8 h from edges, corners, 100:1 elements", worst[1], 1e-6);
-  Say("H20", "values of the stress there, on edges, not finite", bad, 0.);
+  Say("H20", "values of the stress there, on edges, nodes and corners not finite", bad, 0.);
+  Say("H20", "error of the stress at nodes and corners", worst[2], 1e-5);
 }
 END_TEST
 
