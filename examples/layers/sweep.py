@@ -4,14 +4,12 @@ paper's Fig. 8 (displacements at (0.5, 0.75) against delta) and Fig. 10 (unknown
 
   sweep.py [--abut build/bin/abut] [--out out] [--deltas 0.3,0.2,0.1,0.07,0.05] [further options of abut]
 """
-import argparse, os, subprocess
-
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
+import argparse, os, subprocess, sys
 
 from layers import HERE, penalty, record, reference
+
+sys.path.insert(0, os.path.dirname(HERE))
+from picture import plt, save  # noqa: E402
 
 
 def solve(args, delta, further):
@@ -30,22 +28,19 @@ def draw(runs, folder):
     deltas = sorted(runs)
     lower = {d: runs[d]["body.lower.unknowns"] for d in deltas}
     uniform = {d: runs[d]["body.lower.unknowns_uniform"] for d in deltas}
-    plt.rcParams.update({"font.size": 9, "svg.hashsalt": "abut"})
-    figure, axes = plt.subplots(1, 3, figsize=(11, 3.4), layout="constrained")
+    figure, axes = plt.subplots(1, 3, figsize=(11, 3.4))
     for i, axis in enumerate(axes[:2], 1):
         exact = reference(penalty(runs[deltas[0]]))["A"][f"u{i}"]["value"]
-        axis.axhline(1e4 * exact, color="k", lw=0.8, ls="--", label="reference")
-        axis.plot(deltas, [1e4 * runs[d][f"probe.A.u{i}"] for d in deltas], "ko-", ms=4, lw=1, label="computed")
+        axis.axhline(1e4 * exact, color="0.4", lw=0.8, ls="--", marker="", label="reference")
+        axis.plot(deltas, [1e4 * runs[d][f"probe.A.u{i}"] for d in deltas], "o-", label="computed")
         axis.set(xlabel=r"$\delta$", ylabel=f"$u_{i}(0.5, 0.75)$ [$10^{{-4}}$ cm]")
-        axis.legend(frameon=False)
+        axis.legend()
     inverse = [1 / d for d in deltas]
-    axes[2].semilogy(inverse, [uniform[d] for d in deltas], "k^--", ms=4, lw=1, label="uniform, equal smallest cell")
-    axes[2].semilogy(inverse, [lower[d] for d in deltas], "ko-", ms=4, lw=1, label="adapted")
+    axes[2].semilogy(inverse, [uniform[d] for d in deltas], "^--", label="uniform, equal smallest cell")
+    axes[2].semilogy(inverse, [lower[d] for d in deltas], "o-", label="adapted")
     axes[2].set(xlabel=r"$1/\delta$", ylabel="unknowns of the lower body")
-    axes[2].legend(frameon=False)
-    for kind in ("png", "svg"):
-        figure.savefig(os.path.join(folder, f"sweep.{kind}"), dpi=150, metadata={"Date": None} if kind == "svg" else None)
-    print(os.path.join(folder, "sweep.png"))
+    axes[2].legend()
+    save(figure, os.path.join(folder, "sweep"))
 
 
 def main():

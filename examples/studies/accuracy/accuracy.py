@@ -14,7 +14,8 @@ import argparse, collections, csv, json, os, subprocess, sys, tempfile, threadin
 HERE = os.path.dirname(os.path.abspath(__file__))
 TOP = os.path.dirname(os.path.dirname(os.path.dirname(HERE)))
 SCENE = os.path.join(HERE, "layers_exact.yml")
-sys.path[:0] = [os.path.join(os.path.dirname(os.path.dirname(HERE)), "layers"), os.path.dirname(HERE)]
+EXAMPLES = os.path.dirname(os.path.dirname(HERE))
+sys.path[:0] = [os.path.join(EXAMPLES, "layers"), EXAMPLES, os.path.dirname(HERE)]
 from layers import number, profile, record  # noqa: E402
 from study import append, side_by_side  # noqa: E402
 
@@ -284,13 +285,9 @@ def peers(program, *variants):
 
 
 def draw(study, folder):
-    import matplotlib
+    from picture import plt, save
 
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
-    plt.rcParams.update({"font.size": 8, "svg.hashsalt": "abut"})
-    figure, axes = plt.subplots(2, 2, figsize=(10, 7.5), layout="constrained")
+    figure, axes = plt.subplots(2, 2, figsize=(11, 7.5))
     for (program, variants), marker in zip(PEERS.items(), "x+1234"):
         mine = peers(program, *variants)
         twice = 2 if program == "dealii" else 1  # one body
@@ -298,8 +295,8 @@ def draw(study, folder):
             for one, error in zip(axis, ("err_P", "err_p0")):
                 x = [twice * float(row[column] or row["cpu_s"] if column == "cum_cpu_s" else row[column]) for row in mine]
                 one.loglog(x, [float(row[error]) for row in mine], marker, color="0.5", ms=5, label=program)
-    for order, color in zip(ORDERS, ("C0", "C1", "C2", "C3")):
-        for follow, style in (("yes", "o-"), ("no", "o:")):
+    for order, color, marker in zip(ORDERS, ("C0", "C1", "C2", "C3"), "os^D"):
+        for follow, style in (("yes", "-"), ("no", ":")):
             case = Case(*SCENE_KEY, order, BEST[0], BEST[1], follow)
             rows = solved(study.cases.get(case, []))
             if not rows:
@@ -308,13 +305,12 @@ def draw(study, folder):
             for axis, column in zip(axes.T, ("unknowns", "cpu")):
                 for k, one in enumerate(axis):
                     x, y = [float(row[column]) for row in rows], [errors(case, row)[k] for row in rows]
-                    one.loglog(x, y, style, color=color, ms=3, lw=1, label=label)
+                    one.loglog(x, y, marker + style, color=color, label=label)
     for axis, name in zip(axes, ("error of P", "error of $p_0$")):
         axis[0].set(xlabel="unknowns of both bodies", ylabel=name)
         axis[1].set(xlabel="CPU seconds, all meshes (Abut: with start-up)")
-    axes[0, 1].legend(frameon=False, fontsize=7, loc="lower right")
-    for kind in ("png", "svg"):
-        figure.savefig(os.path.join(folder, f"accuracy.{kind}"), dpi=150, metadata={"Date": None} if kind == "svg" else None)
+    axes[0, 1].legend(loc="upper left", bbox_to_anchor=(1, 1))
+    save(figure, os.path.join(folder, "accuracy"))
 
 
 def main():
