@@ -38,4 +38,5 @@ PETSC_EXTERN PetscErrorCode AbutAdaptorGetPeak(AbutAdaptor, PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutAdaptorGetBodies(AbutAdaptor, PetscInt *, const char *const *[]);
 PETSC_EXTERN PetscErrorCode AbutAdaptorMark(AbutAdaptor, AbutBody, Vec, const PetscBool[], PetscBool[], PetscInt *, AbutAdaptVerdict *);
 PETSC_EXTERN PetscErrorCode AbutAdaptorView(AbutAdaptor, PetscViewer);
+PETSC_EXTERN PetscErrorCode AbutAdaptorViewTypes(MPI_Comm, PetscViewer);
 PETSC_EXTERN PetscErrorCode AbutAdaptorDestroy(AbutAdaptor *);

@@ -27,6 +27,7 @@ typedef struct {
 PETSC_EXTERN PetscClassId   ABUTESTIMATOR_CLASSID;
 PETSC_EXTERN PetscErrorCode AbutEstimatorRegister(const char[], PetscErrorCode (*)(AbutEstimator));
 PETSC_EXTERN PetscErrorCode AbutEstimatorSetOps(AbutEstimator, const AbutEstimatorOps *);
+PETSC_EXTERN PetscErrorCode AbutEstimatorSetAbout(AbutEstimator, const char[]);
 PETSC_EXTERN PetscErrorCode AbutEstimatorSetData(AbutEstimator, void *);
 PETSC_EXTERN PetscErrorCode AbutEstimatorGetData(AbutEstimator, void *);
 PETSC_EXTERN PetscErrorCode AbutEstimatorSetUnknowns(AbutEstimator, PetscInt);
@@ -38,6 +39,7 @@ PETSC_EXTERN PetscErrorCode AbutEstimatorSetFromOptions(AbutEstimator);
 PETSC_EXTERN PetscErrorCode AbutEstimatorEstimate(AbutEstimator, AbutBody, Vec);
 PETSC_EXTERN PetscErrorCode AbutEstimatorGetNorms(AbutBody, Vec, PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutEstimatorView(AbutEstimator, PetscViewer);
+PETSC_EXTERN PetscErrorCode AbutEstimatorViewTypes(MPI_Comm, PetscViewer);
 PETSC_EXTERN PetscErrorCode AbutEstimatorDestroy(AbutEstimator *);
 
 /* A stress (s11, s22, s12) thought better than that of the finite elements, at n points of one local cell:

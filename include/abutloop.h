@@ -19,6 +19,7 @@ typedef struct _p_AbutInterface *AbutInterface;
 
 #define SNESDDNEUMANN "ddneumann"
 #define SNESDDACTIVE  "ddactive"
+PETSC_EXTERN PetscErrorCode AbutLoopViewTypes(PetscViewer);
 
 typedef enum {
   ABUT_START_WINKLER,

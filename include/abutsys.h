@@ -1,6 +1,6 @@
 #pragma once
 
-#include <petscsys.h>
+#include <petscviewer.h>
 #include <stdio.h>
 #include <abut/private/abutretro.h>
 
@@ -21,6 +21,7 @@ PETSC_EXTERN PetscErrorCode AbutOptionsEnum(AbutOptionItems, const char[], const
 PETSC_EXTERN PetscErrorCode AbutOptionsReals(AbutOptionItems, const char[], const char[], PetscInt, PetscReal[], PetscBool *);
 PETSC_EXTERN PetscErrorCode AbutOptionsInts(AbutOptionItems, const char[], const char[], PetscInt, PetscInt[], PetscBool *);
 PETSC_EXTERN PetscErrorCode AbutOptionsCheckAllRead(MPI_Comm, PetscBool);
+PETSC_EXTERN PetscErrorCode AbutOptionsView(PetscViewer);
 
 /*S
    AbutExpression - A scalar function of the point (x, y): a number, a formula, a CSV file of points or a C function
@@ -77,3 +78,6 @@ PETSC_EXTERN PetscErrorCode AbutSolveBand(PetscInt, PetscInt, PetscReal[], Petsc
 PETSC_EXTERN PetscErrorCode AbutPluginAppend(MPI_Comm, const char[]);
 PETSC_EXTERN PetscErrorCode AbutPluginLoad(MPI_Comm, const char[], const char[], PetscBool *);
 PETSC_EXTERN PetscErrorCode AbutPluginListAvailable(const char[], char[], size_t);
+PETSC_EXTERN PetscErrorCode AbutPluginAppendFromOptions(MPI_Comm);
+PETSC_EXTERN PetscErrorCode AbutPluginViewType(PetscViewer, const char[], const char[], PetscVoidFunction);
+PETSC_EXTERN PetscErrorCode AbutPluginSameFile(PetscVoidFunction, PetscVoidFunction, PetscBool *);

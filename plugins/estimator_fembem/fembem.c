@@ -147,6 +147,7 @@ static PetscErrorCode AbutEstimatorCreate_Fembem(AbutEstimator est)
   fembem->max_elements = 4000;
   PetscCall(AbutEstimatorSetData(est, fembem));
   PetscCall(AbutEstimatorSetOps(est, &ops));
+  PetscCall(AbutEstimatorSetAbout(est, "stress of boundary elements on the trace of the mesh, eq. (27) of the paper"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -116,6 +116,7 @@ static PetscErrorCode AbutEstimatorCreate_Residual(AbutEstimator est)
   PetscCall(PetscNew(&residual));
   PetscCall(AbutEstimatorSetData(est, residual));
   PetscCall(AbutEstimatorSetOps(est, &ops));
+  PetscCall(AbutEstimatorSetAbout(est, "what is left of equilibrium in cells, across their sides and on the boundary"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -131,6 +131,7 @@ static PetscErrorCode AbutEstimatorCreate_ZZ(AbutEstimator est)
   PetscCall(PetscNew(&zz));
   PetscCall(AbutEstimatorSetData(est, zz));
   PetscCall(AbutEstimatorSetOps(est, &ops));
+  PetscCall(AbutEstimatorSetAbout(est, "stress recovered from patches of cells, Zienkiewicz and Zhu (1992)"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -72,6 +72,7 @@ static PetscErrorCode Create(AbutEstimator est)
 
   PetscFunctionBegin;
   PetscCall(AbutEstimatorSetOps(est, &ops));
+  PetscCall(AbutEstimatorSetAbout(est, "mean stress at the vertices, to copy"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

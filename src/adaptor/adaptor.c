@@ -135,6 +135,40 @@ PetscErrorCode AbutAdaptorSetType(AbutAdaptor adaptor, AbutAdaptorType type)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+   AbutAdaptorViewTypes - Prints every type of adaptor there is, a line each
+
+   Collective
+
+   Input Parameters:
++  comm   - the communicator
+-  viewer - an ASCII viewer
+
+   Level: intermediate
+
+.seealso: `AbutAdaptorSetType()`, `AbutEstimatorViewTypes()`
+@*/
+PetscErrorCode AbutAdaptorViewTypes(MPI_Comm comm, PetscViewer viewer)
+{
+  const char **registered = NULL;
+  AbutAdaptor  adaptor;
+  int          n = 0;
+
+  PetscFunctionBegin;
+  PetscCall(AbutAdaptorCreate(comm, &adaptor));
+  PetscCall(PetscFunctionListGet(AbutAdaptorList, &registered, &n));
+  for (int i = 0; i < n && registered[i]; ++i) {
+    PetscErrorCode (*create)(AbutAdaptor);
+
+    PetscCall(AbutAdaptorSetType(adaptor, registered[i]));
+    PetscCall(PetscFunctionListFind(AbutAdaptorList, registered[i], &create));
+    PetscCall(AbutPluginViewType(viewer, registered[i], adaptor->ops->about, (PetscVoidFunction)create));
+  }
+  PetscCall(PetscFree(registered));
+  PetscCall(AbutAdaptorDestroy(&adaptor));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Takes away the marks of cells at the last level; counts over all ranks cells, cells marked before, and cells still marked */
 static PetscErrorCode AbutAdaptorCapLevel_Private(AbutAdaptor adaptor, const AbutMeshTopology *t, PetscBool mark[], PetscInt count[3])
 {

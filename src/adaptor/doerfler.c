@@ -77,5 +77,6 @@ PetscErrorCode AbutAdaptorCreate_Doerfler(AbutAdaptor adaptor)
   adaptor->ops->setfromoptions = AbutAdaptorSetFromOptions_Doerfler;
   adaptor->ops->view           = AbutAdaptorView_Doerfler;
   adaptor->ops->destroy        = AbutAdaptorDestroy_Doerfler;
+  adaptor->ops->about          = "the fewest cells that hold a part of the error, until the whole is at the target";
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -45,5 +45,6 @@ PetscErrorCode AbutAdaptorCreate_Equal(AbutAdaptor adaptor)
   adaptor->ops->share          = AbutAdaptorShare_Equal;
   adaptor->ops->setfromoptions = AbutAdaptorTargetFromOptions_Private;
   adaptor->ops->view           = AbutAdaptorView_Equal;
+  adaptor->ops->about          = "cells with more than their share of the error, until the whole is at the target";
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -55,5 +55,6 @@ PetscErrorCode AbutAdaptorCreate_Threshold(AbutAdaptor adaptor)
   adaptor->ops->setfromoptions = AbutAdaptorSetFromOptions_Threshold;
   adaptor->ops->view           = AbutAdaptorView_Threshold;
   adaptor->ops->destroy        = AbutAdaptorDestroy_Threshold;
+  adaptor->ops->about          = "cells whose indicator is above delta, eq. (27) of the paper";
   PetscFunctionReturn(PETSC_SUCCESS);
 }

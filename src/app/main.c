@@ -2,25 +2,60 @@
 
 static char help[] = "Unilateral contact of elastic bodies with adaptive meshes.\n\
   abut SCENE [-options]          for example: abut examples/layers/layers.yml -snes_monitor\n\
+  abut SCENE -explain            what the scene would make, and every key with the file it is from; solves nothing\n\
+  abut -list                     the estimators, loops and adaptors there are to choose from\n\
 Exit status: 0 converged and consistent, 1 bad input or a file that cannot be written, 2 not converged, 3 a limit was reached.\n\n";
+
+/* What there is to choose from, and where it was loaded from; -plugin adds to it */
+static PetscErrorCode AbutList(void)
+{
+  const PetscViewer viewer = PETSC_VIEWER_STDOUT_WORLD;
+
+  PetscFunctionBegin;
+  PetscCall(AbutPluginAppendFromOptions(PETSC_COMM_WORLD));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "estimators, -estimator_type; several separated by commas\n"));
+  PetscCall(AbutEstimatorViewTypes(PETSC_COMM_WORLD, viewer));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "loops, -snes_type\n"));
+  PetscCall(AbutLoopViewTypes(viewer));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "adaptors, -adaptor_type\n"));
+  PetscCall(AbutAdaptorViewTypes(PETSC_COMM_WORLD, viewer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the scene would make, and where each of its keys is from */
+static PetscErrorCode AbutExplain(AbutScene scene)
+{
+  PetscFunctionBegin;
+  PetscCall(AbutSceneSetUp(scene));
+  PetscCall(AbutSceneView(scene, PETSC_VIEWER_STDOUT_WORLD));
+  PetscCall(AbutOptionsView(PETSC_VIEWER_STDOUT_WORLD));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 static PetscErrorCode AbutRun(PetscInt *status)
 {
   AbutScene scene;
-  PetscBool help;
+  PetscBool help, list, explain;
 
   PetscFunctionBegin;
+  *status = 0;
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-list", &list));
+  if (list) {
+    PetscCall(AbutList());
+    PetscCall(AbutOptionsCheckAllRead(PETSC_COMM_WORLD, PETSC_TRUE));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-explain", &explain));
   PetscCall(AbutSceneCreate(PETSC_COMM_WORLD, &scene));
   PetscCall(AbutSceneSetFromOptions(scene));
   PetscCall(PetscOptionsHasName(NULL, NULL, "-help", &help));
-  *status = 0;
-  if (!help) { /* -help has listed the keys of what the scene names, and that was all it asked for */
-    PetscCall(AbutSceneSetUp(scene));
+  if (!help && explain) PetscCall(AbutExplain(scene));
+  else if (!help) { /* -help has listed the keys of what the scene names, and that was all it asked for */ PetscCall(AbutSceneSetUp(scene));
     PetscCall(AbutSceneSolve(scene));
     PetscCall(AbutSceneGetExitStatus(scene, status));
   }
   PetscCall(AbutSceneDestroy(&scene));
-  if (!help) PetscCall(AbutOptionsCheckAllRead(PETSC_COMM_WORLD, PETSC_TRUE));
+  if (!help && !explain) PetscCall(AbutOptionsCheckAllRead(PETSC_COMM_WORLD, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

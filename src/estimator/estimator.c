@@ -325,3 +325,36 @@ PetscErrorCode AbutEstimatorView(AbutEstimator est, PetscViewer viewer)
   PetscCall(PetscViewerASCIIPopTab(viewer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/*@
+   AbutEstimatorViewTypes - Prints every type of estimator there is, a line each; opens the plugins for that
+
+   Collective
+
+   Input Parameters:
++  comm   - the communicator
+-  viewer - an ASCII viewer
+
+   Level: intermediate
+
+.seealso: `AbutEstimatorRegister()`, `AbutPluginListAvailable()`
+@*/
+PetscErrorCode AbutEstimatorViewTypes(MPI_Comm comm, PetscViewer viewer)
+{
+  char names[512], *name, *rest = names;
+
+  PetscFunctionBegin;
+  PetscCall(AbutEstimatorInitializePackage());
+  PetscCall(AbutEstimatorListNames_Private(names, sizeof(names)));
+  while ((name = strtok_r(NULL, ", ", &rest))) {
+    AbutEstimator est;
+    PetscErrorCode (*create)(AbutEstimator);
+
+    PetscCall(AbutEstimatorCreate(comm, &est));
+    PetscCall(AbutEstimatorSetType(est, name));
+    PetscCall(PetscFunctionListFind(AbutEstimatorList, name, &create));
+    PetscCall(AbutPluginViewType(viewer, name, est->about, (PetscVoidFunction)create));
+    PetscCall(AbutEstimatorDestroy(&est));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -23,6 +23,27 @@ PetscErrorCode AbutEstimatorSetOps(AbutEstimator est, const AbutEstimatorOps *op
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@C
+   AbutEstimatorSetAbout - Says in one line what a type compares, for `abut -list`; called by the create routine of the type
+
+   Logically Collective
+
+   Input Parameters:
++  est   - the estimator
+-  about - the line, not copied
+
+   Level: advanced
+
+.seealso: `AbutEstimatorSetOps()`, `AbutEstimatorViewTypes()`
+@*/
+PetscErrorCode AbutEstimatorSetAbout(AbutEstimator est, const char about[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(est, ABUTESTIMATOR_CLASSID, 1);
+  est->about = about;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
    AbutEstimatorSetData - Gives an estimator the data of its type
 

@@ -80,21 +80,6 @@ static PetscErrorCode AbutSceneErrorFromOptions_Private(AbutScene scene, PetscBo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Libraries of the user's own, before any type is looked up */
-static PetscErrorCode AbutScenePlugins_Private(AbutScene scene, AbutOptionItems PetscOptionsObject)
-{
-  char    *path[ABUT_MAX_NAMES];
-  PetscInt n = ABUT_MAX_NAMES;
-
-  PetscFunctionBegin;
-  PetscCall(PetscOptionsStringArray("-plugin", "Libraries to load", NULL, path, &n, NULL));
-  for (PetscInt i = 0; i < n; ++i) {
-    PetscCall(AbutPluginAppend(PetscObjectComm((PetscObject)scene), path[i]));
-    PetscCall(PetscFree(path[i]));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode AbutSceneFreeNames_Private(PetscInt n, char *names[])
 {
   PetscFunctionBegin;
@@ -199,7 +184,7 @@ static PetscErrorCode AbutSceneCheckContactKeys_Private(AbutScene scene)
 .  -scene_tol T            - relative error in the energy norm to be reached: chooses theta, tolerances and refinement, see below
 .  -adaptor_type, -estimator_type, -snes_* - what adapts, estimates, iterates; see `AbutAdaptorCreate()`, `AbutEstimatorCreate()`,
                                              `SNESDDNEUMANN`
--  -plugin <libraries>     - libraries with estimators of your own
+-  -plugin <libraries>     - libraries with estimators of your own, see `AbutPluginAppendFromOptions()`
 
    Level: beginner
 
@@ -233,8 +218,8 @@ PetscErrorCode AbutSceneSetFromOptions(AbutScene scene)
                             &scene->wantsratio, NULL));
   PetscCall(PetscOptionsString("-adaptor_type", "Type of the adaptor", NULL, type, type, sizeof(type), &adapts));
   PetscCall(PetscOptionsString("-estimator_type", "Type of the estimator", NULL, type, type, sizeof(type), &estimates));
-  PetscCall(AbutScenePlugins_Private(scene, PetscOptionsObject));
   PetscOptionsEnd();
+  PetscCall(AbutPluginAppendFromOptions(comm)); /* before any type is looked up */
   AbutCheckInput(!hastol || (scene->tol > 0. && scene->tol < 1.), comm,
                  "scene_tol: %g is not a relative error; give a number between 0 and 1, for example 0.01", (double)scene->tol);
   AbutCheckInput(scene->eps_u > 0., comm, "scene_eps_u: %g; give a positive number, for example 0.0015", (double)scene->eps_u);

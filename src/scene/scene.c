@@ -184,7 +184,7 @@ PetscErrorCode AbutSceneGetInterface(AbutScene scene, AbutInterface *iface)
    Collective
 
    Input Parameters:
-+  scene  - the scene
++  scene  - the scene, set up
 -  viewer - the viewer
 
    Level: beginner
@@ -193,9 +193,12 @@ PetscErrorCode AbutSceneGetInterface(AbutScene scene, AbutInterface *iface)
 @*/
 PetscErrorCode AbutSceneView(AbutScene scene, PetscViewer viewer)
 {
+  PetscInt unknowns;
+
   PetscFunctionBegin;
-  PetscCall(PetscViewerASCIIPrintf(viewer, "scene of %" PetscInt_FMT " bodies and %" PetscInt_FMT " pairs\n", scene->nbodies,
-                                   scene->npairs));
+  PetscCall(AbutSceneGetUnknowns_Private(scene, &unknowns));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "scene of %" PetscInt_FMT " bodies and %" PetscInt_FMT " pairs, %" PetscInt_FMT " unknowns\n",
+                                   scene->nbodies, scene->npairs, unknowns));
   PetscCall(PetscViewerASCIIPushTab(viewer));
   PetscCall(AbutSceneViewTolerance_Private(scene, viewer));
   for (PetscInt i = 0; i < scene->nbodies; ++i) PetscCall(AbutBodyView(scene->body[i], viewer));

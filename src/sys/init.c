@@ -52,10 +52,13 @@ static PetscErrorCode AbutInsertSceneFile_Private(const char file[])
 /* Scene files first, then the command line, wherever on it the file stands: the command line wins */
 static PetscErrorCode AbutInsertScene_Private(int nfiles, const char *const files[])
 {
-  PetscInt n;
-  char   **names, **values;
+  PetscInt  n;
+  char    **names, **values;
+  PetscBool explain;
 
   PetscFunctionBegin;
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-explain", &explain));
+  if (explain) PetscCall(AbutSourcesKeep_Private());
   PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
   for (PetscInt i = 0; i < n; ++i) { /* keep copies: the file may replace the values */
     char *v = NULL, *k;
@@ -65,12 +68,16 @@ static PetscErrorCode AbutInsertScene_Private(int nfiles, const char *const file
     names[i]  = k;
     values[i] = v;
   }
-  for (int i = 0; i < nfiles; ++i) PetscCall(AbutInsertSceneFile_Private(files[i]));
+  for (int i = 0; i < nfiles; ++i) {
+    PetscCall(AbutInsertSceneFile_Private(files[i]));
+    PetscCall(AbutSourceFile_Private(files[i]));
+  }
   for (PetscInt i = 0; i < n; ++i) {
     char key[PETSC_MAX_OPTION_NAME];
 
     PetscCall(PetscSNPrintf(key, sizeof(key), "-%s", names[i]));
     PetscCall(PetscOptionsSetValue(NULL, key, values[i]));
+    PetscCall(AbutSourceGiven_Private(names[i], "command line"));
     PetscCall(PetscFree(names[i]));
     PetscCall(PetscFree(values[i]));
   }

@@ -30,9 +30,12 @@ static PetscErrorCode AbutOptionsKey_Private(AbutOptionItems PetscOptionsObject,
 PetscErrorCode AbutOptionsString(AbutOptionItems PetscOptionsObject, const char opt[], const char text[], char value[], size_t len,
                                  PetscBool *set)
 {
+  char      key[256];
   PetscBool given;
 
   PetscFunctionBegin;
+  PetscCall(AbutOptionsKey_Private(PetscOptionsObject, opt, key, sizeof(key)));
+  PetscCall(AbutSourceUnless_Private(key, value));
   PetscCall(PetscOptionsString(opt, text, NULL, value, value, len, &given));
   if (set) *set = given;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -52,7 +55,12 @@ static PetscErrorCode AbutOptionsNumbers_Private(AbutOptionItems PetscOptionsObj
   PetscCall(AbutOptionsKey_Private(PetscOptionsObject, opt, key, sizeof(key)));
   PetscCall(PetscOptionsString(opt, text, NULL, given, given, sizeof(given), &flg));
   if (set) *set = flg;
-  if (!flg) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!flg) {
+    for (PetscInt i = 0; i < n; ++i)
+      PetscCall(PetscSNPrintf(given + strlen(given), sizeof(given) - strlen(given), "%s%.10g", i ? "," : "", (double)value[i]));
+    PetscCall(AbutSourceUnless_Private(key, given));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   for (PetscInt i = 0; i < n; ++i) {
     const double v    = strtod(at, &end);
     const int    last = i + 1 == n;
@@ -148,6 +156,7 @@ PetscErrorCode AbutOptionsInts(AbutOptionItems PetscOptionsObject, const char op
 
   PetscFunctionBegin;
   PetscCheck(n <= 8, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "At most 8 whole numbers in one key");
+  for (PetscInt i = 0; i < n; ++i) v[i] = value[i];
   PetscCall(AbutOptionsNumbers_Private(PetscOptionsObject, opt, text, n, v, PETSC_TRUE, &given));
   for (PetscInt i = 0; given && i < n; ++i) value[i] = (PetscInt)v[i];
   if (set) *set = given;
@@ -206,6 +215,7 @@ PetscErrorCode AbutOptionsEnum(AbutOptionItems PetscOptionsObject, const char op
 
   PetscFunctionBegin;
   PetscCall(AbutOptionsKey_Private(PetscOptionsObject, opt, key, sizeof(key)));
+  PetscCall(AbutSourceUnless_Private(key, names[*value]));
   PetscCall(PetscOptionsString(opt, text, NULL, names[*value], given, sizeof(given), &flg));
   if (set) *set = flg;
   if (!flg) PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,8 +1,9 @@
 #ifndef _GNU_SOURCE
-  #define _GNU_SOURCE /* dladdr() */
+  #define _GNU_SOURCE /* dladdr(), realpath() */
 #endif
 #include <dirent.h>
 #include <dlfcn.h>
+#include <limits.h>
 #include <abut/private/pluginimpl.h> /*I "abutsys.h" I*/
 
 #define ABUT_PLUGIN_SUFFIX "." PETSC_SLSUFFIX
@@ -136,6 +137,39 @@ PetscErrorCode AbutPluginAppend(MPI_Comm comm, const char path[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+#define ABUT_PLUGINS_MAX 64
+
+/*@
+   AbutPluginAppendFromOptions - Opens the libraries that the user names
+
+   Collective
+
+   Input Parameter:
+.  comm - all ranks that will use them
+
+   Options Database Key:
+.  -plugin path,path - the files
+
+   Level: developer
+
+.seealso: `AbutPluginAppend()`
+@*/
+PetscErrorCode AbutPluginAppendFromOptions(MPI_Comm comm)
+{
+  char    *path[ABUT_PLUGINS_MAX];
+  PetscInt n = ABUT_PLUGINS_MAX;
+
+  PetscFunctionBegin;
+  PetscOptionsBegin(comm, NULL, "Plugins", NULL);
+  PetscCall(PetscOptionsStringArray("-plugin", "Libraries to load", NULL, path, &n, NULL));
+  PetscOptionsEnd();
+  for (PetscInt i = 0; i < n; ++i) {
+    PetscCall(AbutPluginAppend(comm, path[i]));
+    PetscCall(PetscFree(path[i]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@C
    AbutPluginLoad - Looks for the plugin that brings a type, by the name of its file, and opens it
 
@@ -221,5 +255,69 @@ PetscErrorCode AbutPluginListAvailable(const char kind[], char names[], size_t l
     }
     free(entry);
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutPluginGetFile_Private(PetscVoidFunction function, char file[], size_t len)
+{
+  char    real[PATH_MAX];
+  Dl_info info;
+
+  PetscFunctionBegin;
+  file[0] = 0;
+  if (!dladdr((void *)(uintptr_t)function, &info) || !info.dli_fname) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscStrncpy(file, realpath(info.dli_fname, real) ? real : info.dli_fname, len));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutPluginViewType - Prints one line of `abut -list`: a type, what it is, and the file that it came from
+
+   Collective
+
+   Input Parameters:
++  viewer - an ASCII viewer
+.  name   - of the type
+.  about  - one line, or `NULL`
+-  create - the function that was registered for it
+
+   Level: developer
+
+.seealso: `AbutPluginSameFile()`, `AbutEstimatorViewTypes()`, `AbutLoopViewTypes()`, `AbutAdaptorViewTypes()`
+@*/
+PetscErrorCode AbutPluginViewType(PetscViewer viewer, const char name[], const char about[], PetscVoidFunction create)
+{
+  char file[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBegin;
+  PetscCall(AbutPluginGetFile_Private(create, file, sizeof(file)));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  %-12s %s%s[%s]\n", name, about ? about : "", about ? "  " : "", file));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutPluginSameFile - Whether two functions are of one library
+
+   Not Collective
+
+   Input Parameters:
++  one   - a function
+-  other - a function
+
+   Output Parameter:
+.  same - whether they are
+
+   Level: developer
+
+.seealso: `AbutPluginViewType()`
+@*/
+PetscErrorCode AbutPluginSameFile(PetscVoidFunction one, PetscVoidFunction other, PetscBool *same)
+{
+  char file[2][PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBegin;
+  PetscCall(AbutPluginGetFile_Private(one, file[0], sizeof(file[0])));
+  PetscCall(AbutPluginGetFile_Private(other, file[1], sizeof(file[1])));
+  PetscCall(PetscStrcmp(file[0], file[1], same));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

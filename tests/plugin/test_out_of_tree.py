@@ -1,7 +1,7 @@
 """The template of an estimator, built outside the source tree: from the tree, from an installation, and what is said when something is wrong"""
 import os, shutil, subprocess, tempfile
 
-from abut import BUILD, LAYERS, ROOT, run, run_error
+from abut import BUILD, LAYERS, PROGRAM, ROOT, run, run_error
 
 SHORT = ("-upper_mesh_cells 32,8", "-adaptor_threshold 0.3", "-snes_ddneumann_gamma 0.05")
 COMPILE = "mpicc -std=gnu99 -Wall -Wextra -Werror -fPIC -shared"
@@ -41,6 +41,8 @@ def test_built_against_the_source_tree():
         one = run(LAYERS, *SHORT, "-plugin", library, "-estimator_type template")
         two = run(LAYERS, *SHORT, "-plugin", library, "-estimator_type template", ranks=2)
         check(one)
+        (line,) = [line for line in call(PROGRAM, "-list", "-plugin", library).splitlines() if line.startswith("  template")]
+        assert line.endswith(f"[{os.path.realpath(library)}]") and "to copy" in line, line
         assert one["body.lower.cells"] == two["body.lower.cells"]
         assert abs(one["eta.lower"] / two["eta.lower"] - 1) < 1e-5
 

@@ -21,6 +21,7 @@ struct _AbutAdaptorOps {
   PetscErrorCode (*setfromoptions)(AbutAdaptor, AbutOptionItems); /* optional */
   PetscErrorCode (*view)(AbutAdaptor, PetscViewer);               /* optional */
   PetscErrorCode (*destroy)(AbutAdaptor);                         /* optional, frees data */
+  const char *about;                                              /* one line for `abut -list` */
 };
 
 #define ABUT_BODIES_MAX 64

@@ -5,8 +5,9 @@
 
 struct _p_AbutEstimator {
   PETSCHEADER(AbutEstimatorOps);
-  PetscInt unknowns; /* solved for by the last estimate, beside those of the body */
-  void    *data;     /* of the type */
+  PetscInt    unknowns; /* solved for by the last estimate, beside those of the body */
+  void       *data;     /* of the type */
+  const char *about;    /* likewise, one line */
 };
 
 /* "fembem, zz": the names in a type of several; what makes an estimator of them */
