@@ -163,8 +163,8 @@ static PetscErrorCode AbutAdaptorPassesUnknowns_Private(AbutAdaptor adaptor, Abu
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Cells that the type would not refine even if their errors were larger by 1/coarsen may be merged; none if nothing is to be refined for the
-   error, as where only a peak is */
+/* Cells that the type would not refine even if their errors were larger by 1/coarsen may be merged; none if nothing is refined for the
+   error, but for a peak */
 static PetscErrorCode AbutAdaptorMarkMerges_Private(AbutAdaptor adaptor, AbutBody body, AbutMesh mesh, PetscInt n, const PetscReal eta[],
                                                     const PetscBool also[])
 {

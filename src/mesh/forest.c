@@ -270,11 +270,14 @@ static PetscErrorCode AbutMeshRefine_Forest(AbutMesh mesh, const PetscBool marks
       if (quad->merged == ABUT_MERGED_NOW) quad->merged = ABUT_MERGED_BEFORE;
     }
   }
+  if (mesh->coarsen) { /* with siblings on one rank */
+    p4est_partition(p4est, 1, NULL);
+    p4est_coarsen_ext(p4est, 0, 0, AbutForestMayMerge_Private, AbutForestBegin_Private, AbutForestReplace_Private);
+  }
   p4est_refine_ext(p4est, 0, -1, AbutForestIsMarked_Private, AbutForestBegin_Private, AbutForestReplace_Private);
-  if (mesh->coarsen) p4est_coarsen_ext(p4est, 0, 0, AbutForestMayMerge_Private, AbutForestBegin_Private, AbutForestReplace_Private);
   /* across sides only: the paper's extra rule */
   p4est_balance_ext(p4est, P4EST_CONNECT_FACE, AbutForestBegin_Private, AbutForestReplace_Private);
-  p4est_partition(p4est, 1, NULL); /* siblings stay on one rank, so that they can be merged */
+  p4est_partition(p4est, 0, NULL);
   PetscCall(AbutForestToPlex_Private(mesh, p4est, dm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,7 +1,7 @@
 #include <abut/private/meshimpl.h> /*I "abutmesh.h" I*/
 
-/* How a mesh became what it is: every set of ties and every split and merge since the first mesh, by which a restarted run makes the same mesh
-   again, on any number of ranks. Marked cells are known by their centres. */
+/* How a mesh became what it is: every set of ties, every split and every merge since the first mesh, by which a restarted run makes the
+   same mesh again, on any number of ranks. Marked cells are known by their centres. */
 
 typedef enum {
   ABUT_STEP_TIES,  /* new ties, see AbutMeshSetTies() */
@@ -115,7 +115,8 @@ PetscErrorCode AbutJournalDestroy_Private(AbutMesh mesh)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static int AbutCentreCompare_Private(const void *a, const void *b)
+/* By the first coordinate, then by the second one */
+int AbutPointCompare_Private(const void *a, const void *b)
 {
   const PetscReal *x = (const PetscReal *)a, *y = (const PetscReal *)b;
 
@@ -123,23 +124,22 @@ static int AbutCentreCompare_Private(const void *a, const void *b)
   return (x[1] > y[1]) - (x[1] < y[1]);
 }
 
-/* The centres of all ranks on rank 0, in order */
-static PetscErrorCode AbutJournalGather_Private(MPI_Comm comm, PetscInt n, const PetscReal mine[], PetscInt *all, PetscReal **centre)
+/* The points of all ranks on all ranks, in order; each has so many numbers, of which the first two are its coordinates */
+PetscErrorCode AbutPointsGather_Private(MPI_Comm comm, PetscInt each, PetscInt n, const PetscReal mine[], PetscInt *nall, PetscReal **all)
 {
-  PetscMPIInt size, rank, count, *counts, *first;
+  PetscMPIInt size, count, *counts, *first;
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_size(comm, &size));
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  PetscCall(PetscMPIIntCast(2 * n, &count));
+  PetscCall(PetscMPIIntCast(each * n, &count));
   PetscCall(PetscMalloc2(size, &counts, size + 1, &first));
   PetscCallMPI(MPI_Allgather(&count, 1, MPI_INT, counts, 1, MPI_INT, comm));
   first[0] = 0;
   for (PetscMPIInt r = 0; r < size; ++r) first[r + 1] = first[r] + counts[r];
-  *all = first[size] / 2;
-  PetscCall(PetscMalloc1(rank ? 0 : first[size], centre));
-  PetscCallMPI(MPI_Gatherv(mine, count, MPIU_REAL, *centre, counts, first, MPIU_REAL, 0, comm));
-  if (!rank) qsort(*centre, (size_t)*all, 2 * sizeof(PetscReal), AbutCentreCompare_Private);
+  *nall = first[size] / each;
+  PetscCall(PetscMalloc1(first[size], all));
+  PetscCallMPI(MPI_Allgatherv(mine, count, MPIU_REAL, *all, counts, first, MPIU_REAL, comm));
+  if (*nall) qsort(*all, (size_t)*nall, (size_t)each * sizeof(PetscReal), AbutPointCompare_Private);
   PetscCall(PetscFree2(counts, first));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -234,7 +234,7 @@ PetscErrorCode AbutMeshArchive(AbutMesh mesh, AbutArchive ar)
     if (!reads) {
       title[0] = mesh->step[i].kind;
       title[1] = mesh->step[i].n;
-      if (title[0] >= ABUT_STEP_SPLIT) PetscCall(AbutJournalGather_Private(comm, title[1], mesh->step[i].value, &title[1], &value));
+      if (title[0] >= ABUT_STEP_SPLIT) PetscCall(AbutPointsGather_Private(comm, 2, title[1], mesh->step[i].value, &title[1], &value));
     }
     PetscCall(AbutArchiveInts(ar, "split", 2, title));
     if (reads) PetscCall(PetscMalloc1(3 * title[1], &value));

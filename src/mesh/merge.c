@@ -9,18 +9,8 @@ typedef struct {
   PetscReal least; /* only a cell larger than this is bisected for it: 0 for all, PETSC_MAX_REAL where that is not known here */
 } AbutVertex;
 
-#define ABUT_VERTEX_REALS 3
-
-static int AbutVertexCompare_Private(const void *a, const void *b)
-{
-  const PetscReal *x = (const PetscReal *)a, *y = (const PetscReal *)b;
-
-  if (x[0] != y[0]) return x[0] > y[0] ? 1 : -1;
-  return (x[1] > y[1]) - (x[1] < y[1]);
-}
-
-/* The local vertices of a DM */
-static PetscErrorCode AbutVerticesGet_Private(AbutMesh mesh, DM dm, PetscInt *n, AbutVertex vertex[])
+/* Adds the local vertices of a DM to n others */
+static PetscErrorCode AbutVerticesAdd_Private(AbutMesh mesh, DM dm, PetscInt *n, AbutVertex *vertex[])
 {
   PetscInt           vStart, vEnd;
   PetscSection       section;
@@ -29,21 +19,20 @@ static PetscErrorCode AbutVerticesGet_Private(AbutMesh mesh, DM dm, PetscInt *n,
 
   PetscFunctionBegin;
   PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, &vEnd));
-  *n = vEnd - vStart;
-  if (!vertex) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscRealloc(sizeof(AbutVertex) * (size_t)(*n + vEnd - vStart), vertex));
   PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
   PetscCall(DMGetCoordinateSection(dm, &section));
   PetscCall(VecGetArrayRead(coordinates, &x));
-  for (PetscInt v = 0; v < *n; ++v) {
+  for (PetscInt v = vStart; v < vEnd; ++v, ++*n) {
     PetscInt offset;
 
-    PetscCall(PetscSectionGetOffset(section, v + vStart, &offset));
+    PetscCall(PetscSectionGetOffset(section, v, &offset));
     for (PetscInt d = 0; d < 2; ++d) {
-      const PetscReal steps = mesh->cells[d] * PetscPowReal(2., ABUT_LEVEL_MAX);
+      const PetscReal steps = mesh->cells[d] * PetscPowReal(2., ABUT_LEVEL_MAX), width = mesh->upper[d] - mesh->lower[d];
 
-      vertex[v].at[d] = PetscFloorReal((PetscRealPart(x[offset + d]) - mesh->lower[d]) / (mesh->upper[d] - mesh->lower[d]) * steps + 0.5);
+      (*vertex)[*n].at[d] = PetscFloorReal((PetscRealPart(x[offset + d]) - mesh->lower[d]) / width * steps + 0.5);
     }
-    vertex[v].least = PETSC_MAX_REAL;
+    (*vertex)[*n].least = PETSC_MAX_REAL;
   }
   PetscCall(VecRestoreArrayRead(coordinates, &x));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -86,7 +75,8 @@ static PetscErrorCode AbutVerticesRelease_Private(AbutMesh mesh, const PetscBool
     for (PetscInt k = 0; k < 3; ++k) vertex[corner[k]].least = PetscMin(vertex[corner[k]].least, may ? 4. * area : 0.);
   }
   for (PetscInt v = 0; v < n; ++v)
-    if (bsearch(vertex[v].at, triangles->gone, (size_t)triangles->ngone, 2 * sizeof(PetscReal), AbutVertexCompare_Private))
+    if (triangles->ngone &&
+        bsearch(vertex[v].at, triangles->gone, (size_t)triangles->ngone, 2 * sizeof(PetscReal), AbutPointCompare_Private))
       vertex[v].least = 0.;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -94,23 +84,12 @@ static PetscErrorCode AbutVerticesRelease_Private(AbutMesh mesh, const PetscBool
 /* The vertices of all ranks on all ranks, in order and each once */
 static PetscErrorCode AbutVerticesGather_Private(MPI_Comm comm, PetscInt nmine, const AbutVertex mine[], PetscInt *n, AbutVertex *all[])
 {
-  PetscMPIInt size, count, *counts, *first;
-  PetscInt    k = 0;
+  PetscInt k = 0;
 
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_size(comm, &size));
-  PetscCall(PetscMPIIntCast(ABUT_VERTEX_REALS * nmine, &count));
-  PetscCall(PetscMalloc2(size, &counts, size + 1, &first));
-  PetscCallMPI(MPI_Allgather(&count, 1, MPI_INT, counts, 1, MPI_INT, comm));
-  first[0] = 0;
-  for (PetscMPIInt r = 0; r < size; ++r) first[r + 1] = first[r] + counts[r];
-  *n = first[size] / ABUT_VERTEX_REALS;
-  PetscCall(PetscMalloc1(*n, all));
-  PetscCallMPI(MPI_Allgatherv(mine, count, MPIU_REAL, *all, counts, first, MPIU_REAL, comm));
-  PetscCall(PetscFree2(counts, first));
-  qsort(*all, (size_t)*n, sizeof(AbutVertex), AbutVertexCompare_Private);
+  PetscCall(AbutPointsGather_Private(comm, sizeof(AbutVertex) / sizeof(PetscReal), nmine, (const PetscReal *)mine, n, (PetscReal **)all));
   for (PetscInt i = 1; i < *n; ++i)
-    if (AbutVertexCompare_Private(&(*all)[k], &(*all)[i])) (*all)[++k] = (*all)[i];
+    if (AbutPointCompare_Private(&(*all)[k], &(*all)[i])) (*all)[++k] = (*all)[i];
     else (*all)[k].least = PetscMin((*all)[k].least, (*all)[i].least);
   *n = k + 1;
   for (PetscInt i = 0; i < *n; ++i)
@@ -118,19 +97,22 @@ static PetscErrorCode AbutVerticesGather_Private(MPI_Comm comm, PetscInt nmine, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static const AbutVertex *AbutVerticesFind_Private(PetscInt n, const AbutVertex all[], const PetscReal at[2])
+{
+  return (const AbutVertex *)bsearch(at, all, (size_t)n, sizeof(AbutVertex), AbutPointCompare_Private);
+}
+
 /* Bisects once every side that has one of the vertices in its middle, in a cell that is large enough */
 static PetscErrorCode AbutVerticesBisect_Private(AbutMesh mesh, PetscInt n, const AbutVertex wanted[], DM *dm, PetscBool *any)
 {
-  PetscInt        nvertices, cStart, cEnd, corner[3];
+  PetscInt        nvertices = 0, cStart, cEnd, corner[3];
   const PetscInt *side;
-  AbutVertex     *vertex;
+  AbutVertex     *vertex = NULL;
   DMLabel         active;
   DM              finer;
 
   PetscFunctionBegin;
-  PetscCall(AbutVerticesGet_Private(mesh, *dm, &nvertices, NULL));
-  PetscCall(PetscMalloc1(nvertices, &vertex));
-  PetscCall(AbutVerticesGet_Private(mesh, *dm, &nvertices, vertex));
+  PetscCall(AbutVerticesAdd_Private(mesh, *dm, &nvertices, &vertex));
   PetscCall(DMLabelCreate(PETSC_COMM_SELF, "sides", &active));
   PetscCall(DMPlexGetHeightStratum(*dm, 0, &cStart, &cEnd));
   *any = PETSC_FALSE;
@@ -140,9 +122,9 @@ static PetscErrorCode AbutVerticesBisect_Private(AbutMesh mesh, PetscInt n, cons
     PetscCall(AbutTriangleGet_Private(*dm, c, vertex, corner, &area));
     PetscCall(DMPlexGetCone(*dm, c, &side));
     for (PetscInt k = 0; k < 3; ++k) {
-      const PetscReal *a = vertex[corner[k]].at, *b = vertex[corner[(k + 1) % 3]].at,
-                      middle[2] = {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])};
-      const AbutVertex *found   = (const AbutVertex *)bsearch(middle, wanted, (size_t)n, sizeof(AbutVertex), AbutVertexCompare_Private);
+      const PetscReal  *a = vertex[corner[k]].at, *b = vertex[corner[(k + 1) % 3]].at;
+      const PetscReal   middle[2] = {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])};
+      const AbutVertex *found     = AbutVerticesFind_Private(n, wanted, middle);
 
       if (!found || area <= found->least) continue;
       PetscCall(DMLabelSetValue(active, side[k], DM_ADAPT_REFINE));
@@ -163,17 +145,15 @@ static PetscErrorCode AbutVerticesBisect_Private(AbutMesh mesh, PetscInt n, cons
 /* The vertices of the list that a DM does not have, in order; whole: it has all that must stay */
 static PetscErrorCode AbutVerticesMissing_Private(AbutMesh mesh, DM dm, PetscInt n, AbutVertex all[], PetscInt *nmissing, PetscBool *whole)
 {
-  PetscInt    nvertices;
-  AbutVertex *vertex;
+  PetscInt    nvertices = 0;
+  AbutVertex *vertex    = NULL;
   PetscBool  *has;
 
   PetscFunctionBegin;
-  PetscCall(AbutVerticesGet_Private(mesh, dm, &nvertices, NULL));
-  PetscCall(PetscMalloc1(nvertices, &vertex));
+  PetscCall(AbutVerticesAdd_Private(mesh, dm, &nvertices, &vertex));
   PetscCall(PetscCalloc1(n, &has));
-  PetscCall(AbutVerticesGet_Private(mesh, dm, &nvertices, vertex));
   for (PetscInt v = 0; v < nvertices; ++v) {
-    const AbutVertex *found = (const AbutVertex *)bsearch(vertex[v].at, all, (size_t)n, sizeof(AbutVertex), AbutVertexCompare_Private);
+    const AbutVertex *found = AbutVerticesFind_Private(n, all, vertex[v].at);
 
     if (found) has[found - all] = PETSC_TRUE;
   }
@@ -195,28 +175,26 @@ static PetscErrorCode AbutVerticesForbid_Private(AbutMesh mesh, PetscInt n, cons
   AbutMesh_Triangles *triangles = (AbutMesh_Triangles *)mesh->data;
 
   PetscFunctionBegin;
+  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscRealloc(2 * sizeof(PetscReal) * (size_t)(triangles->ngone + n), &triangles->gone));
   for (PetscInt i = 0; i < n; ++i) PetscCall(PetscArraycpy(triangles->gone + 2 * triangles->ngone++, gone[i].at, 2));
-  qsort(triangles->gone, (size_t)triangles->ngone, 2 * sizeof(PetscReal), AbutVertexCompare_Private);
+  qsort(triangles->gone, (size_t)triangles->ngone, 2 * sizeof(PetscReal), AbutPointCompare_Private);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* From the mesh with the marked cells split to the one without the vertices that may go */
 PetscErrorCode AbutTrianglesMerge_Private(AbutMesh mesh, const PetscBool marks[], DM *dm)
 {
-  PetscInt    nold, nnew, n, left = 0;
-  AbutVertex *mine, *all;
+  PetscInt    nmine  = 0, n, left;
+  AbutVertex *mine   = NULL, *all;
   DM          coarse = ((AbutMesh_Triangles *)mesh->data)->first;
   PetscBool   again  = PETSC_FALSE, whole;
 
   PetscFunctionBegin;
-  PetscCall(AbutVerticesGet_Private(mesh, mesh->dm, &nold, NULL));
-  PetscCall(AbutVerticesGet_Private(mesh, *dm, &nnew, NULL));
-  PetscCall(PetscMalloc1(nold + nnew, &mine));
-  PetscCall(AbutVerticesGet_Private(mesh, mesh->dm, &nold, mine));
-  PetscCall(AbutVerticesRelease_Private(mesh, marks, nold, mine));
-  PetscCall(AbutVerticesGet_Private(mesh, *dm, &nnew, mine + nold));
-  PetscCall(AbutVerticesGather_Private(PetscObjectComm((PetscObject)mesh), nold + nnew, mine, &n, &all));
+  PetscCall(AbutVerticesAdd_Private(mesh, mesh->dm, &nmine, &mine));
+  PetscCall(AbutVerticesRelease_Private(mesh, marks, nmine, mine));
+  PetscCall(AbutVerticesAdd_Private(mesh, *dm, &nmine, &mine));
+  PetscCall(AbutVerticesGather_Private(PetscObjectComm((PetscObject)mesh), nmine, mine, &n, &all));
   PetscCall(PetscFree(mine));
   for (PetscInt i = 0; i < n && !again; ++i) again = (PetscBool)(all[i].least > 0.);
   if (again) {

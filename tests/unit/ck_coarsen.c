@@ -48,7 +48,7 @@ static int Ascending(const void *a, const void *b)
   return (x[1] > y[1]) - (x[1] < y[1]);
 }
 
-/* The corners of all cells, in order: those of an equal mesh, but for the diagonals of parallelograms, have each place equally often or not */
+/* The corners of all cells, in order and each once: all that is the same in meshes that differ in diagonals of parallelograms */
 static CkCells Corners(AbutMesh mesh)
 {
   CkCells  all = CkGather(mesh);

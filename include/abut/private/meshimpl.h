@@ -81,6 +81,8 @@ PETSC_INTERN PetscErrorCode AbutMeshMoveToTies_Private(AbutMesh, PetscInt, Petsc
 PETSC_INTERN PetscErrorCode AbutJournalTies_Private(AbutMesh, PetscInt, const AbutTie[]);
 PETSC_INTERN PetscErrorCode AbutJournalAdapt_Private(AbutMesh, PetscBool, const PetscBool[]);
 PETSC_INTERN PetscErrorCode AbutJournalDestroy_Private(AbutMesh);
+PETSC_INTERN PetscErrorCode AbutPointsGather_Private(MPI_Comm, PetscInt, PetscInt, const PetscReal[], PetscInt *, PetscReal **);
+PETSC_INTERN int            AbutPointCompare_Private(const void *, const void *);
 PETSC_INTERN PetscErrorCode AbutMeshSidesBuild_Private(AbutMesh);
 PETSC_INTERN void           AbutMeshGetEdgeNodes_Private(const AbutMeshTopology *, PetscInt, PetscInt, PetscInt[]);
 PETSC_EXTERN PetscLogEvent  ABUTMESH_Adapt;
