@@ -74,7 +74,10 @@ static PetscErrorCode AbutAdaptorSetBodies_Private(AbutAdaptor adaptor, char lis
    part of theirs, at the cost of one more solve a mesh. It is worth it for contact forces better than a part in 10^6.
 
    With `-adaptor_coarsen` P cells whose error is below P times the bound above which cells are refined, `-adaptor_threshold` or the share
-   of the target, go up to one level back (`AbutMeshSetCoarsening()`); those at the edges of contacts do not.
+   of the target, may go back by one level a cycle (`AbutMeshSetCoarsening()`); those at the edges of contacts stay. It takes away what a
+   jump left in the wrong place: on two layers of order 2 that begin with 3 by 1 cells and jump 8 levels, P = 0.1 saves 15 per cent of
+   the unknowns of quads and 25 of triangles, with the same error of the force on as many meshes. Where the first mesh finds the edge it
+   gains nothing: on the same layers from 8 by 2 cells 0.1 merges no cell, and 0.4 takes 16 meshes instead of 9.
 
    The energy has nearly nothing of an error of the pressure far from the edges, so meshes that are made for the energy leave the cells
    below the largest pressure as they were. With `-adaptor_peak` the cells of both bodies that touch it are refined whatever their

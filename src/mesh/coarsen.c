@@ -20,8 +20,8 @@
 
    Of triangles a vertex goes if all cells around it are marked, none of them is to be split, and the others do not need it to conform: the
    mesh is made again from the first one, by bisecting the sides in whose middle there is a vertex that stays. Diagonals of parallelograms
-   may come to lie the other way. Every rank holds all vertices while it is made. Where the vertices that stay cannot be had in this way,
-   which takes a grid whose cells are more than 1.7 times as long as wide, nothing is merged.
+   may come to lie the other way. Every rank holds all vertices while it is made. Where the vertices that stay cannot be had in this way
+   nothing is merged: of a grid whose cells are more than 1.7 times as long as wide some triangles stay finer than marked.
 
    A cell that was made by a merge and is split again stays split, and a vertex goes only once: so no sequence of marks splits and merges
    for ever.

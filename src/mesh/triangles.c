@@ -145,15 +145,24 @@ PetscErrorCode AbutTrianglesSplit_Private(DM old, DMLabel active, DM *dm)
 
 static PetscErrorCode AbutMeshRefine_Triangles(AbutMesh mesh, const PetscBool marks[], DM *dm)
 {
-  DMLabel  active;
-  PetscInt cStart, cEnd;
+  DMLabel   active;
+  PetscInt  cStart, cEnd;
+  PetscBool any = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscCall(DMLabelCreate(PETSC_COMM_SELF, "adapt", &active));
   PetscCall(DMPlexGetHeightStratum(mesh->dm, 0, &cStart, &cEnd));
-  for (PetscInt c = cStart; c < cEnd && marks; ++c)
-    if (marks[c - cStart]) PetscCall(DMLabelSetValue(active, c, DM_ADAPT_REFINE));
-  PetscCall(AbutTrianglesSplit_Private(mesh->dm, active, dm));
+  for (PetscInt c = cStart; c < cEnd && marks; ++c) {
+    if (!marks[c - cStart]) continue;
+    PetscCall(DMLabelSetValue(active, c, DM_ADAPT_REFINE));
+    any = PETSC_TRUE;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPIU_BOOL, MPI_LOR, PetscObjectComm((PetscObject)mesh)));
+  if (any) PetscCall(AbutTrianglesSplit_Private(mesh->dm, active, dm));
+  else {
+    *dm = mesh->dm;
+    PetscCall(PetscObjectReference((PetscObject)*dm));
+  }
   PetscCall(DMLabelDestroy(&active));
   if (mesh->coarsen) PetscCall(AbutTrianglesMerge_Private(mesh, marks, dm));
   PetscCall(AbutTrianglesDistribute_Private(mesh, dm));
