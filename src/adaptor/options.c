@@ -77,7 +77,7 @@ static PetscErrorCode AbutAdaptorSetBodies_Private(AbutAdaptor adaptor, char lis
    of the target, may go back by one level a cycle (`AbutMeshSetCoarsening()`); those at the edges of contacts stay. It takes away what a
    jump left in the wrong place: on two layers of order 2 that begin with 3 by 1 cells and jump 8 levels, P = 0.1 saves 15 per cent of
    the unknowns of quads and 25 of triangles, with the same error of the force on as many meshes. Where the first mesh finds the edge it
-   gains nothing: on the same layers from 8 by 2 cells 0.1 merges no cell, and 0.4 takes 16 meshes instead of 9.
+   gains nothing: on the same layers from 8 by 2 cells, to 0.002, 0.1 merges no cell and 0.4 takes 15 meshes instead of 9.
 
    The energy has nearly nothing of an error of the pressure far from the edges, so meshes that are made for the energy leave the cells
    below the largest pressure as they were. With `-adaptor_peak` the cells of both bodies that touch it are refined whatever their

@@ -52,6 +52,12 @@ def test_every_type_merges_and_ends():
             assert len(on) < 3 * len(off) and error(on[-1]) < 3 * error(off[-1]) + 1e-4, (shape, adaptor, len(on), len(off), error(on[-1]), error(off[-1]))
 
 
+def test_cells_at_the_edge_stay():
+    """However small their errors are; those beside them go"""
+    *_, before, last = adapt("quad", "type: threshold, threshold: 0.02, max_level: 8", 0.5, FAR, "-estimator_type zz")
+    assert last["unknowns"] < before["unknowns"] and last["body.lower.level_max"] == before["body.lower.level_max"] == 8, (before, last)
+
+
 def test_any_number_of_ranks_makes_the_same_meshes():
     keys = "unknowns", "body.lower.cells", "body.upper.cells", "body.lower.level_max", "pair.mid.tied"
     for shape in SHAPES:
