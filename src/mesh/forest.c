@@ -23,7 +23,7 @@ typedef enum {
 /* What every quadrant keeps in mind */
 typedef struct {
   int        mark;     /* 1: to be split, -1: may be merged */
-  int        least;    /* level of the cell below which it is not merged */
+  int        least;    /* it is merged into no cell of a lower level */
   AbutMerged merged;   /* is it made of its children? */
   int        children; /* which of these were made of theirs, a bit each */
 } AbutQuad;
