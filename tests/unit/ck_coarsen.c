@@ -347,7 +347,7 @@ START_TEST(every_distribution_merges_the_same_cells)
 }
 END_TEST
 
-/* Cells five times as long as wide, whose bisections depend on what came first: every marked cell has a vertex in the middle of each side */
+/* Cells five times as long as wide, whose bisections depend on what came first: marked cells have a vertex in the middle of each side */
 START_TEST(no_split_of_flat_triangles_is_lost)
 {
   AbutMesh mesh = CkBox(0., 0., 10., 1., 4, 2, ABUT_TRIANGLE);
