@@ -78,6 +78,8 @@ PETSC_EXTERN PetscErrorCode AbutMeshGetSideName(AbutMesh, PetscInt, const char *
 PETSC_EXTERN PetscErrorCode AbutMeshFindSide(AbutMesh, const char[], const char[], PetscInt *);
 PETSC_EXTERN PetscErrorCode AbutMeshGetSideEnds(AbutMesh, PetscInt, PetscReal[4], PetscReal[2]);
 PETSC_EXTERN PetscErrorCode AbutMeshAdapt(AbutMesh, const PetscBool[]);
+PETSC_EXTERN PetscErrorCode AbutMeshSetCoarsening(AbutMesh, const PetscBool[]);
+PETSC_EXTERN PetscErrorCode AbutMeshKeepCell(AbutMesh, PetscInt);
 PETSC_EXTERN PetscErrorCode AbutMeshGetGeneration(AbutMesh, PetscInt *);
 PETSC_EXTERN PetscErrorCode AbutMeshKeepJournal(AbutMesh);
 PETSC_EXTERN PetscErrorCode AbutMeshArchive(AbutMesh, AbutArchive);

@@ -197,6 +197,29 @@ static PetscErrorCode AbutAdaptorPassesUnknowns_Private(AbutAdaptor adaptor, Abu
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Cells that the type would not refine even if their errors were larger by 1/coarsen may be merged; none if nothing is refined for the
+   error, but for a peak */
+static PetscErrorCode AbutAdaptorMarkMerges_Private(AbutAdaptor adaptor, AbutBody body, AbutMesh mesh, PetscInt n, const PetscReal eta[],
+                                                    const PetscBool also[])
+{
+  PetscReal *larger;
+  PetscBool *mark;
+
+  PetscFunctionBegin;
+  if (adaptor->coarsen <= 0.) PetscFunctionReturn(PETSC_SUCCESS);
+  if (adaptor->ops->share && adaptor->allowance >= PETSC_MAX_REAL) {
+    PetscCall(AbutMeshSetCoarsening(mesh, NULL));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(PetscMalloc2(n, &larger, n, &mark));
+  for (PetscInt c = 0; c < n; ++c) larger[c] = eta[c] / adaptor->coarsen;
+  PetscUseTypeMethod(adaptor, mark, body, n, larger, mark);
+  for (PetscInt c = 0; c < n; ++c) mark[c] = (PetscBool) !(mark[c] || (also && also[c]));
+  PetscCall(AbutMeshSetCoarsening(mesh, mark));
+  PetscCall(PetscFree2(larger, mark));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@C
    AbutAdaptorMark - Marks the cells of a body that are to be refined
 
@@ -221,7 +244,9 @@ static PetscErrorCode AbutAdaptorPassesUnknowns_Private(AbutAdaptor adaptor, Abu
    The number of unknowns to come is estimated as unknowns*(1 + 3*marked/cells), before the mesh is balanced; so the cap may be passed by a
    little.
 
-.seealso: `AbutMeshAdapt()`, `AbutEstimatorEstimate()`, `AbutAdaptVerdict`
+   With `-adaptor_coarsen` the cells that may be merged go to `AbutMeshSetCoarsening()`; cells of `also` are not among them.
+
+.seealso: `AbutMeshAdapt()`, `AbutMeshSetCoarsening()`, `AbutEstimatorEstimate()`, `AbutAdaptVerdict`
 @*/
 PetscErrorCode AbutAdaptorMark(AbutAdaptor adaptor, AbutBody body, Vec eta, const PetscBool also[], PetscBool mark[], PetscInt *nmarked,
                                AbutAdaptVerdict *verdict)
@@ -240,6 +265,7 @@ PetscErrorCode AbutAdaptorMark(AbutAdaptor adaptor, AbutBody body, Vec eta, cons
   PetscCall(AbutMeshGetTopology(mesh, &t));
   PetscCall(VecGetArrayRead(eta, &e));
   PetscUseTypeMethod(adaptor, mark, body, t->ncells, e, mark);
+  PetscCall(AbutAdaptorMarkMerges_Private(adaptor, body, mesh, t->ncells, e, also));
   PetscCall(VecRestoreArrayRead(eta, &e));
   for (PetscInt c = 0; c < t->ncells && also; ++c) mark[c] = (PetscBool)(mark[c] || also[c]);
   PetscCall(AbutAdaptorCapLevel_Private(adaptor, t, mark, count));
@@ -278,6 +304,8 @@ PetscErrorCode AbutAdaptorView(AbutAdaptor adaptor, PetscViewer viewer)
   PetscTryTypeMethod(adaptor, view, viewer);
   PetscCall(PetscViewerASCIIPrintf(viewer, "at most level %" PetscInt_FMT ", %" PetscInt_FMT " unknowns in a body\n", adaptor->max_level,
                                    adaptor->max_unknowns));
+  if (adaptor->coarsen > 0.)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "merges cells below %g of the bound for refinement\n", (double)adaptor->coarsen));
   PetscCall(PetscViewerASCIIPrintf(viewer, "adapts %s", adaptor->nbodies ? "" : "all bodies"));
   PetscCall(PetscViewerASCIIUseTabs(viewer, PETSC_FALSE));
   for (PetscInt i = 0; i < adaptor->nbodies; ++i) PetscCall(PetscViewerASCIIPrintf(viewer, "%s%s", i ? ", " : "", adaptor->body[i]));

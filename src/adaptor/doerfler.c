@@ -3,7 +3,7 @@
 /* Doerfler: the smallest set of cells, of all bodies together, that holds a given part of the square of the whole error, after W. Doerfler,
    A convergent adaptive algorithm for Poisson's equation, SIAM J. Numer. Anal. 33 (1996), eq. (4.1); done when the whole error is at most
    the target. A small part gives the fewest unknowns in many cycles, a large one few cycles.
-   Limits: it never coarsens; cells at -adaptor_max_level count in the set, so that it ends when such cells hold the part. */
+   Limits: cells at -adaptor_max_level count in the set, so that it ends when such cells hold the part. */
 typedef struct {
   PetscReal bulk;
 } AbutAdaptor_Doerfler;

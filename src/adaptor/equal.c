@@ -5,7 +5,7 @@
    until then the cells with more than their part, target/sqrt(cells), are refined. Of these only the worst: what is better than the worst
    will be after a refinement can wait, and so can what is not needed for the target if a refined cell keeps half of its error. It is the
    total error that counts, so unlike a threshold on the pointwise indicator it ends at a singularity.
-   Limits: it never coarsens; the half is right where the stress is smooth, elsewhere it takes a cycle more. */
+   Limits: the half is right where the stress is smooth, elsewhere it takes a cycle more. */
 #define ABUT_BINS   400
 #define ABUT_OCTAVE 8    /* bins for a factor of two in the square of the error */
 #define ABUT_KEPT   0.25 /* part of the square of a cell's error that its children have together; a child has the square of it */

@@ -50,6 +50,7 @@ static PetscErrorCode AbutAdaptorSetBodies_Private(AbutAdaptor adaptor, char lis
 .  -adaptor_target <0.05>          - equal and doerfler: end when the error of all bodies together is estimated to be at most this, relative
 .  -adaptor_bulk <0.5>             - doerfler: the refined cells hold this part of the square of the error of all bodies together
 .  -adaptor_jump <1>               - a marked cell at the edge of a contact goes up this many levels at once
+.  -adaptor_coarsen <0>            - cells below this part of the bound above which cells are refined may be merged again; 0: never
 .  -adaptor_follow <bool>          - the meshes of adapted bodies move such that a vertex lies on each edge of their contacts; by default
                                      where the order is 2 or more
 .  -adaptor_settle <bool>          - a new mesh that follows is solved twice, and moves to the edges that the first solve finds
@@ -72,6 +73,12 @@ static PetscErrorCode AbutAdaptorSetBodies_Private(AbutAdaptor adaptor, char lis
    After a jump the edge is known to a part of the length of the old cells; with `-adaptor_settle` the solve on the new cells gives it to a
    part of theirs, at the cost of one more solve a mesh. It is worth it for contact forces better than a part in 10^6.
 
+   With `-adaptor_coarsen` P cells whose error is below P times the bound above which cells are refined, `-adaptor_threshold` or the share
+   of the target, may go back by one level a cycle (`AbutMeshSetCoarsening()`); those at the edges of contacts stay. It takes away what a
+   jump left in the wrong place: on two layers of order 2 that begin with 3 by 1 cells and jump 8 levels, P = 0.1 saves 15 per cent of
+   the unknowns of quads and 25 of triangles, with the same error of the force on as many meshes. Where the first mesh finds the edge it
+   gains nothing: on the same layers from 8 by 2 cells, to 0.002, 0.1 merges no cell and 0.4 takes 15 meshes instead of 9.
+
    The energy has nearly nothing of an error of the pressure far from the edges, so meshes that are made for the energy leave the cells
    below the largest pressure as they were. With `-adaptor_peak` the cells of both bodies that touch it are refined whatever their
    indicators, as long as `AbutPairGetPeaks()` finds it unresolved and what the loop leaves is less: the loop runs to 0.003 of the
@@ -79,7 +86,7 @@ static PetscErrorCode AbutAdaptorSetBodies_Private(AbutAdaptor adaptor, char lis
    of 0.02 it stays at 1e-5 whatever the key says. Corners, where one side ends and the other goes on, are left alone.
 
    Limits: where contact reaches the end of the part that both sides share, as below the corner of a punch, there is no edge to follow.
-   No type coarsens.
+   Without a cell to refine nothing is merged: the last mesh may have cells that are finer than they need be.
 
 .seealso: `AbutAdaptorMark()`, `AbutAdaptorGetBodies()`
 @*/
@@ -114,6 +121,10 @@ PetscErrorCode AbutAdaptorSetFromOptions(AbutAdaptor adaptor)
   AbutCheckInput(adaptor->jump > 0 && adaptor->jump <= ABUT_LEVEL_MAX, comm,
                  "adaptor_jump: %" PetscInt_FMT " is no number of levels; give a number from 1 to %d, for example 2", adaptor->jump,
                  ABUT_LEVEL_MAX);
+  PetscCall(AbutOptionsReal(PetscOptionsObject, "-adaptor_coarsen", "part of the bound for refinement below which cells may be merged",
+                            &adaptor->coarsen, NULL));
+  AbutCheckInput(adaptor->coarsen >= 0. && adaptor->coarsen <= 0.5, comm,
+                 "adaptor_coarsen: %g; give a part of the bound for refinement from 0 to 0.5, for example 0.05", (double)adaptor->coarsen);
   PetscCall(AbutOptionsBool(PetscOptionsObject, "-adaptor_follow", "meshes move with the edges of the contacts", &adaptor->follow, &set));
   if (set) adaptor->followset = PETSC_TRUE;
   PetscCall(AbutOptionsBool(PetscOptionsObject, "-adaptor_settle", "a new mesh that follows moves again after its first solve",

@@ -2,7 +2,7 @@
 
 /* Threshold: every cell whose indicator is above delta, eq. (27) of the paper.
    Limits: it asks for a pointwise accuracy, so at a singularity of the stress it never ends by itself (the indicator there grows with every
-   level): -adaptor_max_level ends it. It never coarsens. */
+   level): -adaptor_max_level ends it. */
 typedef struct {
   PetscReal delta;
 } AbutAdaptor_Threshold;

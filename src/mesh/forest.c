@@ -14,9 +14,62 @@ typedef struct {
   sc_array_t *points, *conesizes, *cones, *orientations, *coordinates, *children, *parents, *childids, *leaves, *remotes;
 } AbutPlexData;
 
+typedef enum {
+  ABUT_MERGED_NOT,
+  ABUT_MERGED_BEFORE,
+  ABUT_MERGED_NOW /* in the present step: balance may still take it back */
+} AbutMerged;
+
+/* What every quadrant keeps in mind */
+typedef struct {
+  int        mark;     /* 1: to be split, -1: may be merged */
+  int        least;    /* it is merged into no cell of a lower level */
+  AbutMerged merged;   /* is it made of its children? */
+  int        children; /* which of these were made of theirs, a bit each */
+} AbutQuad;
+
+static AbutQuad *AbutForestQuad_Private(const p4est_quadrant_t *quadrant)
+{
+  return (AbutQuad *)quadrant->p.user_data;
+}
+
+static void AbutForestBegin_Private(PETSC_UNUSED p4est_t *p4est, PETSC_UNUSED p4est_topidx_t tree, p4est_quadrant_t *quadrant)
+{
+  memset(quadrant->p.user_data, 0, sizeof(AbutQuad));
+}
+
 static int AbutForestIsMarked_Private(PETSC_UNUSED p4est_t *p4est, PETSC_UNUSED p4est_topidx_t tree, p4est_quadrant_t *quadrant)
 {
-  return quadrant->p.user_int;
+  return AbutForestQuad_Private(quadrant)->mark > 0;
+}
+
+static int AbutForestMayMerge_Private(PETSC_UNUSED p4est_t *p4est, PETSC_UNUSED p4est_topidx_t tree, p4est_quadrant_t *family[])
+{
+  for (int i = 0; i < P4EST_CHILDREN; ++i) {
+    const AbutQuad *quad = AbutForestQuad_Private(family[i]);
+
+    if (quad->mark >= 0 || quad->least >= family[i]->level) return 0;
+  }
+  return 1;
+}
+
+/* A cell that is split after a merge is not merged again, unless it is only balance that takes the merge back */
+static void AbutForestReplace_Private(PETSC_UNUSED p4est_t *p4est, PETSC_UNUSED p4est_topidx_t tree, int nout, p4est_quadrant_t *out[],
+                                      int nin, p4est_quadrant_t *in[])
+{
+  const AbutQuad *old = AbutForestQuad_Private(out[0]);
+
+  for (int i = 0; i < nin; ++i) {
+    AbutQuad *quad = AbutForestQuad_Private(in[i]);
+
+    quad->least = old->least;
+    if (nout > 1) {
+      quad->merged = ABUT_MERGED_NOW;
+      for (int k = 0; k < nout; ++k) quad->children |= (AbutForestQuad_Private(out[k])->merged != ABUT_MERGED_NOT) << k;
+    } else if (old->merged == ABUT_MERGED_NOW)
+      quad->merged = (old->children >> p4est_quadrant_child_id(in[i])) % 2 ? ABUT_MERGED_BEFORE : ABUT_MERGED_NOT;
+    else if (old->merged == ABUT_MERGED_BEFORE) quad->least = in[i]->level;
+  }
 }
 
 /* Two children of a side and their middle have numbers in DMPlex's reference tree, not p4est's: they are told by incidence */
@@ -163,7 +216,7 @@ static PetscErrorCode AbutMeshCreate_Forest_DM(AbutMesh mesh, DM *dm)
       double *v = &forest->connectivity->vertices[3 * i + d];
       *v        = AbutMeshGridLine_Private(mesh, d, (PetscInt)*v);
     }
-  forest->p4est = p4est_new(PetscObjectComm((PetscObject)mesh), forest->connectivity, 0, NULL, NULL);
+  forest->p4est = p4est_new(PetscObjectComm((PetscObject)mesh), forest->connectivity, sizeof(AbutQuad), AbutForestBegin_Private, NULL);
   PetscCall(AbutForestToPlex_Private(mesh, forest->p4est, dm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -183,6 +236,24 @@ static PetscErrorCode AbutMeshGetLevels_Forest(AbutMesh mesh, PetscInt level[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The present cells are those of the first mesh */
+static PetscErrorCode AbutMeshKeepFirst_Forest(AbutMesh mesh)
+{
+  p4est_t *p4est = ((AbutMesh_Forest *)mesh->data)->p4est;
+
+  PetscFunctionBegin;
+  for (p4est_topidx_t t = p4est->first_local_tree; t <= p4est->last_local_tree; ++t) {
+    p4est_tree_t *tree = p4est_tree_array_index(p4est->trees, t);
+
+    for (size_t q = 0; q < tree->quadrants.elem_count; ++q) {
+      const p4est_quadrant_t *quadrant = p4est_quadrant_array_index(&tree->quadrants, q);
+
+      AbutForestQuad_Private(quadrant)->least = quadrant->level;
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode AbutMeshRefine_Forest(AbutMesh mesh, const PetscBool marks[], DM *dm)
 {
   p4est_t *p4est = ((AbutMesh_Forest *)mesh->data)->p4est;
@@ -192,11 +263,20 @@ static PetscErrorCode AbutMeshRefine_Forest(AbutMesh mesh, const PetscBool marks
   for (p4est_topidx_t t = p4est->first_local_tree; t <= p4est->last_local_tree; ++t) {
     p4est_tree_t *tree = p4est_tree_array_index(p4est->trees, t);
 
-    for (size_t q = 0; q < tree->quadrants.elem_count; ++q)
-      p4est_quadrant_array_index(&tree->quadrants, q)->p.user_int = marks[c++] ? 1 : 0;
+    for (size_t q = 0; q < tree->quadrants.elem_count; ++q, ++c) {
+      AbutQuad *quad = AbutForestQuad_Private(p4est_quadrant_array_index(&tree->quadrants, q));
+
+      quad->mark = marks && marks[c] ? 1 : (mesh->coarsen && mesh->coarsen[c] ? -1 : 0);
+      if (quad->merged == ABUT_MERGED_NOW) quad->merged = ABUT_MERGED_BEFORE;
+    }
   }
-  p4est_refine(p4est, 0, AbutForestIsMarked_Private, NULL);
-  p4est_balance(p4est, P4EST_CONNECT_FACE, NULL); /* across sides only: the paper's extra rule */
+  if (mesh->coarsen) { /* with siblings on one rank */
+    p4est_partition(p4est, 1, NULL);
+    p4est_coarsen_ext(p4est, 0, 0, AbutForestMayMerge_Private, AbutForestBegin_Private, AbutForestReplace_Private);
+  }
+  p4est_refine_ext(p4est, 0, -1, AbutForestIsMarked_Private, AbutForestBegin_Private, AbutForestReplace_Private);
+  /* across sides only: the paper's extra rule */
+  p4est_balance_ext(p4est, P4EST_CONNECT_FACE, AbutForestBegin_Private, AbutForestReplace_Private);
   p4est_partition(p4est, 0, NULL);
   PetscCall(AbutForestToPlex_Private(mesh, p4est, dm));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -227,6 +307,7 @@ PetscErrorCode AbutMeshCreate_Forest(AbutMesh mesh)
   PetscCall(PetscNew(&forest));
   mesh->data           = forest;
   mesh->ops->create    = AbutMeshCreate_Forest_DM;
+  mesh->ops->keepfirst = AbutMeshKeepFirst_Forest;
   mesh->ops->refine    = AbutMeshRefine_Forest;
   mesh->ops->getlevels = AbutMeshGetLevels_Forest;
   mesh->ops->destroy   = AbutMeshDestroy_Forest;

@@ -1,12 +1,13 @@
 #include <abut/private/meshimpl.h> /*I "abutmesh.h" I*/
 
-/* How a mesh became what it is: every set of ties and every split since the first mesh, by which a restarted run makes the same mesh
-   again, on any number of ranks. Split cells are known by their centres. */
+/* How a mesh became what it is: every set of ties, every split and every merge since the first mesh, by which a restarted run makes the
+   same mesh again, on any number of ranks. Marked cells are known by their centres. */
 
 typedef enum {
-  ABUT_STEP_TIES, /* new ties, see AbutMeshSetTies() */
-  ABUT_STEP_MOVE, /* the mesh moved to them */
-  ABUT_STEP_SPLIT /* cells were split, and the mesh moved */
+  ABUT_STEP_TIES,  /* new ties, see AbutMeshSetTies() */
+  ABUT_STEP_MOVE,  /* the mesh moved to them */
+  ABUT_STEP_SPLIT, /* cells were split, those marked in the step before merged, and the mesh moved */
+  ABUT_STEP_MERGE  /* cells were marked that may be merged, see AbutMeshSetCoarsening() */
 } AbutStepKind;
 
 struct _AbutMeshStep {
@@ -25,7 +26,7 @@ struct _AbutMeshStep {
    Level: developer
 
    Note:
-   Costs 16 bytes for each cell that is split.
+   Costs 16 bytes for each cell that is marked.
 
 .seealso: `AbutMeshArchive()`
 @*/
@@ -80,20 +81,28 @@ static PetscReal AbutJournalCentre_Private(const AbutMeshTopology *t, PetscInt c
   return PetscMax(PetscAbsReal(x[0] - t->x[2 * corner[0]]), PetscAbsReal(x[1] - t->x[2 * corner[0] + 1]));
 }
 
-/* Before the mesh changes; without marks it only moves */
-PetscErrorCode AbutJournalAdapt_Private(AbutMesh mesh, PetscBool splits, const PetscBool mark[])
+static PetscErrorCode AbutJournalMarks_Private(AbutMesh mesh, PetscInt kind, const PetscBool mark[])
 {
   const AbutMeshTopology *t = &mesh->topology;
   AbutMeshStep            step;
   PetscInt                n = 0;
 
   PetscFunctionBegin;
-  if (!mesh->journal) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt c = 0; c < t->ncells && splits; ++c) n += mark[c];
-  PetscCall(AbutJournalAdd_Private(mesh, splits ? ABUT_STEP_SPLIT : ABUT_STEP_MOVE, n, 2, &step));
+  for (PetscInt c = 0; c < t->ncells && mark; ++c) n += mark[c];
+  PetscCall(AbutJournalAdd_Private(mesh, kind, n, 2, &step));
   n = 0;
-  for (PetscInt c = 0; c < t->ncells && splits; ++c)
+  for (PetscInt c = 0; c < t->ncells && mark; ++c)
     if (mark[c]) (void)AbutJournalCentre_Private(t, c, step->value + 2 * n++);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Before the mesh changes; without cells to split or merge it only moves */
+PetscErrorCode AbutJournalAdapt_Private(AbutMesh mesh, PetscBool changes, const PetscBool mark[])
+{
+  PetscFunctionBegin;
+  if (!mesh->journal) PetscFunctionReturn(PETSC_SUCCESS);
+  if (mesh->coarsen) PetscCall(AbutJournalMarks_Private(mesh, ABUT_STEP_MERGE, mesh->coarsen));
+  PetscCall(AbutJournalMarks_Private(mesh, changes ? ABUT_STEP_SPLIT : ABUT_STEP_MOVE, changes ? mark : NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -106,7 +115,8 @@ PetscErrorCode AbutJournalDestroy_Private(AbutMesh mesh)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static int AbutCentreCompare_Private(const void *a, const void *b)
+/* By the first coordinate, then by the second one */
+int AbutPointCompare_Private(const void *a, const void *b)
 {
   const PetscReal *x = (const PetscReal *)a, *y = (const PetscReal *)b;
 
@@ -114,23 +124,22 @@ static int AbutCentreCompare_Private(const void *a, const void *b)
   return (x[1] > y[1]) - (x[1] < y[1]);
 }
 
-/* The centres of all ranks on rank 0, in order */
-static PetscErrorCode AbutJournalGather_Private(MPI_Comm comm, PetscInt n, const PetscReal mine[], PetscInt *all, PetscReal **centre)
+/* The points of all ranks on all ranks, in order; each has so many numbers, of which the first two are its coordinates */
+PetscErrorCode AbutPointsGather_Private(MPI_Comm comm, PetscInt each, PetscInt n, const PetscReal mine[], PetscInt *nall, PetscReal **all)
 {
-  PetscMPIInt size, rank, count, *counts, *first;
+  PetscMPIInt size, count, *counts, *first;
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_size(comm, &size));
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  PetscCall(PetscMPIIntCast(2 * n, &count));
+  PetscCall(PetscMPIIntCast(each * n, &count));
   PetscCall(PetscMalloc2(size, &counts, size + 1, &first));
   PetscCallMPI(MPI_Allgather(&count, 1, MPI_INT, counts, 1, MPI_INT, comm));
   first[0] = 0;
   for (PetscMPIInt r = 0; r < size; ++r) first[r + 1] = first[r] + counts[r];
-  *all = first[size] / 2;
-  PetscCall(PetscMalloc1(rank ? 0 : first[size], centre));
-  PetscCallMPI(MPI_Gatherv(mine, count, MPIU_REAL, *centre, counts, first, MPIU_REAL, 0, comm));
-  if (!rank) qsort(*centre, (size_t)*all, 2 * sizeof(PetscReal), AbutCentreCompare_Private);
+  *nall = first[size] / each;
+  PetscCall(PetscMalloc1(first[size], all));
+  PetscCallMPI(MPI_Allgatherv(mine, count, MPIU_REAL, *all, counts, first, MPIU_REAL, comm));
+  if (*nall) qsort(*all, (size_t)*nall, (size_t)each * sizeof(PetscReal), AbutPointCompare_Private);
   PetscCall(PetscFree2(counts, first));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -180,7 +189,7 @@ static PetscErrorCode AbutJournalReplay_Private(AbutMesh mesh, PetscInt kind, Pe
     found = AbutJournalFind_Private(&mesh->topology, n, value, mark);
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &found, 1, MPIU_INT, MPI_SUM, comm));
     *same = (PetscBool)(found == n);
-    if (*same) PetscCall(AbutMeshAdapt(mesh, mark));
+    if (*same) PetscCall((kind == ABUT_STEP_MERGE ? AbutMeshSetCoarsening : AbutMeshAdapt)(mesh, mark));
     PetscCall(PetscFree(mark));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -198,7 +207,7 @@ static PetscErrorCode AbutJournalReplay_Private(AbutMesh mesh, PetscInt kind, Pe
    Level: developer
 
    Note:
-   The same mesh to the last bit on the same number of ranks. An archive whose splits do not fit, or that ends with another number of
+   The same mesh to the last bit on the same number of ranks. An archive whose marks do not fit, or that ends with another number of
    cells, is a bad input.
 
 .seealso: `AbutMeshKeepJournal()`, `AbutArchiveOpen()`
@@ -225,7 +234,7 @@ PetscErrorCode AbutMeshArchive(AbutMesh mesh, AbutArchive ar)
     if (!reads) {
       title[0] = mesh->step[i].kind;
       title[1] = mesh->step[i].n;
-      if (title[0] == ABUT_STEP_SPLIT) PetscCall(AbutJournalGather_Private(comm, title[1], mesh->step[i].value, &title[1], &value));
+      if (title[0] >= ABUT_STEP_SPLIT) PetscCall(AbutPointsGather_Private(comm, 2, title[1], mesh->step[i].value, &title[1], &value));
     }
     PetscCall(AbutArchiveInts(ar, "split", 2, title));
     if (reads) PetscCall(PetscMalloc1(3 * title[1], &value));

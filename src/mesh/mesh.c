@@ -185,6 +185,7 @@ static PetscErrorCode AbutMeshSetDM_Private(AbutMesh mesh, DM dm)
 {
   PetscFunctionBegin;
   PetscCall(AbutMeshTopologyReset_Private(mesh));
+  PetscCall(PetscFree(mesh->coarsen));
   PetscCall(DMDestroy(&mesh->dm));
   mesh->dm = dm;
   PetscCall(AbutMeshTopologyBuild_Private(mesh));
@@ -219,26 +220,28 @@ PetscErrorCode AbutMeshSetUp(AbutMesh mesh)
   PetscUseTypeMethod(mesh, create, &dm);
   PetscCall(AbutMeshSetDM_Private(mesh, dm));
   PetscCall(AbutMeshRefineToSize_Private(mesh));
+  PetscUseTypeMethod(mesh, keepfirst);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
-   AbutMeshAdapt - Splits the marked cells, and those that must follow, distributes the new mesh, and moves it to its ties
+   AbutMeshAdapt - Splits the marked cells, and those that must follow, merges others, distributes the new mesh, and moves it to its ties
 
    Collective
 
    Input Parameters:
 +  mesh  - the mesh
--  marks - [ncells] the local cells to split; on all ranks `NULL` if only the ties have changed
+-  marks - [ncells] the local cells to split; on all ranks `NULL` for none
 
    Level: intermediate
 
    Notes:
    Quadrilaterals are split in four and kept 2:1 across sides, which is the paper's extra rule against spurious refinement;
    triangles are split in four by bisections, and their neighbours bisected until the mesh conforms.
-   Every array got from the mesh before is no longer valid; without marks, and with the ties as they were, nothing happens.
+   Every array got from the mesh before is no longer valid; without cells to split or to merge, and with the ties as they were, nothing
+   happens.
 
-.seealso: `AbutMeshGetTopology()`, `AbutMeshGetGeneration()`, `AbutMeshSetTies()`, `AbutAdaptorMark()`
+.seealso: `AbutMeshGetTopology()`, `AbutMeshGetGeneration()`, `AbutMeshSetTies()`, `AbutMeshSetCoarsening()`, `AbutAdaptorMark()`
 @*/
 PetscErrorCode AbutMeshAdapt(AbutMesh mesh, const PetscBool marks[])
 {
@@ -248,7 +251,7 @@ PetscErrorCode AbutMeshAdapt(AbutMesh mesh, const PetscBool marks[])
   PetscFunctionBegin;
   PetscValidHeaderSpecific(mesh, ABUTMESH_CLASSID, 1);
   PetscCheck(mesh->setupcalled, PetscObjectComm((PetscObject)mesh), PETSC_ERR_ORDER, "Call AbutMeshSetUp() first");
-  splits = (PetscBool)(marks != NULL); /* a rank without cells may have no array */
+  splits = (PetscBool)(marks || mesh->coarsen); /* a rank without cells may have no array */
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &splits, 1, MPIU_BOOL, MPI_LOR, PetscObjectComm((PetscObject)mesh)));
   if (!splits && !mesh->tiesmoved) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscLogEventBegin(ABUTMESH_Adapt, mesh, 0, 0, 0));
@@ -430,6 +433,7 @@ PetscErrorCode AbutMeshDestroy(AbutMesh *mesh)
   PetscCall(AbutMeshTopologyReset_Private(*mesh));
   PetscCall(DMDestroy(&(*mesh)->dm));
   for (PetscInt side = 0; side < ABUT_BOX_SIDES; ++side) PetscCall(PetscFree((*mesh)->knot[side]));
+  PetscCall(PetscFree((*mesh)->coarsen));
   PetscCall(AbutJournalDestroy_Private(*mesh));
   PetscTryTypeMethod(*mesh, destroy);
   PetscCall(AbutExpressionDestroy(&(*mesh)->size));

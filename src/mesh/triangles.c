@@ -127,25 +127,44 @@ static PetscErrorCode AbutMeshCreate_Triangles_DM(AbutMesh mesh, DM *dm)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode AbutMeshRefine_Triangles(AbutMesh mesh, const PetscBool marks[], DM *dm)
+/* Bisects the labelled sides, and those of labelled cells */
+PetscErrorCode AbutTrianglesSplit_Private(DM old, DMLabel active, DM *dm)
 {
   DMPlexTransform transform;
-  DMLabel         active;
-  PetscInt        cStart, cEnd;
+
+  PetscFunctionBegin;
+  PetscCall(DMPlexTransformCreate(PetscObjectComm((PetscObject)old), &transform));
+  PetscCall(DMPlexTransformSetDM(transform, old));
+  PetscCall(DMPlexTransformSetType(transform, DMPLEXREFINESBR));
+  PetscCall(DMPlexTransformSetActive(transform, active));
+  PetscCall(DMPlexTransformSetUp(transform));
+  PetscCall(DMPlexTransformApply(transform, old, dm));
+  PetscCall(DMPlexTransformDestroy(&transform));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutMeshRefine_Triangles(AbutMesh mesh, const PetscBool marks[], DM *dm)
+{
+  DMLabel   active;
+  PetscInt  cStart, cEnd;
+  PetscBool any = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscCall(DMLabelCreate(PETSC_COMM_SELF, "adapt", &active));
   PetscCall(DMPlexGetHeightStratum(mesh->dm, 0, &cStart, &cEnd));
-  for (PetscInt c = cStart; c < cEnd; ++c)
-    if (marks[c - cStart]) PetscCall(DMLabelSetValue(active, c, DM_ADAPT_REFINE));
-  PetscCall(DMPlexTransformCreate(PetscObjectComm((PetscObject)mesh), &transform));
-  PetscCall(DMPlexTransformSetDM(transform, mesh->dm));
-  PetscCall(DMPlexTransformSetType(transform, DMPLEXREFINESBR));
-  PetscCall(DMPlexTransformSetActive(transform, active));
-  PetscCall(DMPlexTransformSetUp(transform));
-  PetscCall(DMPlexTransformApply(transform, mesh->dm, dm));
-  PetscCall(DMPlexTransformDestroy(&transform));
+  for (PetscInt c = cStart; c < cEnd && marks; ++c) {
+    if (!marks[c - cStart]) continue;
+    PetscCall(DMLabelSetValue(active, c, DM_ADAPT_REFINE));
+    any = PETSC_TRUE;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPIU_BOOL, MPI_LOR, PetscObjectComm((PetscObject)mesh)));
+  if (any) PetscCall(AbutTrianglesSplit_Private(mesh->dm, active, dm));
+  else {
+    *dm = mesh->dm;
+    PetscCall(PetscObjectReference((PetscObject)*dm));
+  }
   PetscCall(DMLabelDestroy(&active));
+  if (mesh->coarsen) PetscCall(AbutTrianglesMerge_Private(mesh, marks, dm));
   PetscCall(AbutTrianglesDistribute_Private(mesh, dm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -165,11 +184,36 @@ static PetscErrorCode AbutMeshGetLevels_Triangles(AbutMesh mesh, PetscInt level[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode AbutMeshCreate_Triangles(AbutMesh mesh)
+static PetscErrorCode AbutMeshKeepFirst_Triangles(AbutMesh mesh)
 {
   PetscFunctionBegin;
+  PetscCall(PetscObjectReference((PetscObject)mesh->dm));
+  ((AbutMesh_Triangles *)mesh->data)->first = mesh->dm;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutMeshDestroy_Triangles(AbutMesh mesh)
+{
+  AbutMesh_Triangles *triangles = (AbutMesh_Triangles *)mesh->data;
+
+  PetscFunctionBegin;
+  PetscCall(DMDestroy(&triangles->first));
+  PetscCall(PetscFree(triangles->gone));
+  PetscCall(PetscFree(mesh->data));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AbutMeshCreate_Triangles(AbutMesh mesh)
+{
+  AbutMesh_Triangles *triangles;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&triangles));
+  mesh->data           = triangles;
   mesh->ops->create    = AbutMeshCreate_Triangles_DM;
+  mesh->ops->keepfirst = AbutMeshKeepFirst_Triangles;
   mesh->ops->refine    = AbutMeshRefine_Triangles;
   mesh->ops->getlevels = AbutMeshGetLevels_Triangles;
+  mesh->ops->destroy   = AbutMeshDestroy_Triangles;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -152,7 +152,23 @@ static PetscErrorCode AbutSceneTieBody_Private(AbutScene scene, AbutBody body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A new mesh for one body; without marks only ties may move it */
+/* Cells at the edges stay, whatever their error: they hold the vertices that are tied */
+static PetscErrorCode AbutSceneKeepCells_Private(AbutScene scene, AbutBody body)
+{
+  const AbutMeshTopology *t;
+  AbutMesh                mesh;
+
+  PetscFunctionBegin;
+  PetscCall(AbutBodyGetMesh(body, &mesh));
+  PetscCall(AbutMeshGetTopology(mesh, &t));
+  for (PetscInt e = 0; e < scene->nedges; ++e)
+    for (PetscInt k = 0; k < t->nsideedges; ++k)
+      if (t->sideedge[3 * k + 2] == AbutSceneEdgeSide_Private(&scene->edge[e], body) && AbutSideTouches_Private(t, k, scene->edge[e].x))
+        PetscCall(AbutMeshKeepCell(mesh, t->sidecell[k]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A new mesh for one body; without marks only ties may move it, or cells be merged */
 PetscErrorCode AbutSceneAdaptBody_Private(AbutScene scene, AbutBody body, const PetscBool mark[])
 {
   AbutMesh  mesh;
@@ -163,6 +179,7 @@ PetscErrorCode AbutSceneAdaptBody_Private(AbutScene scene, AbutBody body, const 
   PetscCall(PetscMalloc1(scene->nedges, &level));
   if (mark) PetscCall(AbutSceneWantedLevels_Private(scene, body, mark, level));
   PetscCall(AbutSceneTieBody_Private(scene, body));
+  PetscCall(AbutSceneKeepCells_Private(scene, body));
   PetscCall(AbutMeshAdapt(mesh, mark));
   if (mark) PetscCall(AbutSceneJump_Private(scene, body, level));
   PetscCall(PetscFree(level));

@@ -12,6 +12,7 @@ EXACT = os.path.join(ROOT, "examples", "studies", "accuracy", "layers_exact.yml"
 STACK = os.path.join(ROOT, "examples", "stack", "stack.yml")
 FOLLOWED = (EXACT, "-lower_mesh_order 3 -upper_mesh_order 3 -adaptor_target 1e-3 -adaptor_jump 2 -adaptor_settle yes -adaptor_peak 1e-4")
 TRIANGLES = (EXACT, "-lower_mesh_order 2 -upper_mesh_order 2 -lower_mesh_shape triangle -upper_mesh_cells 6,2 -adaptor_target 5e-3")
+MERGED = (EXACT, "-lower_mesh_shape triangle -lower_mesh_cells 3,1 -upper_mesh_cells 3,1 -adaptor_jump 8 -adaptor_target 5e-3 -adaptor_coarsen 0.2")
 INTERLEAVED = (LAYERS, "-adaptor_threshold 0.2 -scene_interleave yes -snes_type ddneumann")
 COUNTED = re.compile(r"time\.|memory|residual|balance|complementarity|penetration|check|error\.loop|error\.linear|slack")
 
@@ -35,7 +36,7 @@ def same(one, other, tolerance):
 
 
 def test_a_run_that_goes_on_ends_as_if_it_had_not_been_stopped():
-    for scene in FOLLOWED, TRIANGLES, INTERLEAVED:
+    for scene in FOLLOWED, TRIANGLES, MERGED, INTERLEAVED:
         with tempfile.TemporaryDirectory() as folder:
             whole, cycles = stopped(folder, scene)
             assert len(cycles) > 4, cycles
@@ -48,7 +49,7 @@ def test_a_run_that_goes_on_ends_as_if_it_had_not_been_stopped():
 
 
 def test_on_any_number_of_ranks():
-    for scene in FOLLOWED, TRIANGLES:
+    for scene in FOLLOWED, TRIANGLES, MERGED:
         with tempfile.TemporaryDirectory() as folder:
             whole, _ = stopped(folder, scene, ranks=2)
             for ranks in 1, 2, 3, 4:

@@ -33,6 +33,7 @@ struct _p_AbutAdaptor {
   PetscInt  max_level, max_unknowns;
   PetscInt  jump; /* levels that a refined cell at a contact edge goes up */
   PetscBool follow, followset, settle;
+  PetscReal coarsen;   /* part of the bound for refinement below which cells may be merged, 0: none are */
   PetscReal peak;      /* last coefficient of the pressure where it is largest, relative; 0: it is not looked at */
   PetscReal target;    /* relative error of all bodies together, of a type that has a share */
   PetscReal allowance; /* relative error that a cell of the body marked next may have, likewise */

@@ -6,10 +6,13 @@
 
 typedef struct _AbutMeshOps *AbutMeshOps;
 struct _AbutMeshOps {
-  PetscErrorCode (*create)(AbutMesh, DM *);                    /* required: the first mesh of the box */
-  PetscErrorCode (*refine)(AbutMesh, const PetscBool[], DM *); /* required: the mesh with the marked cells (and what must follow) split */
-  PetscErrorCode (*getlevels)(AbutMesh, PetscInt[]);           /* required: level of each local cell of the current DM */
-  PetscErrorCode (*destroy)(AbutMesh);                         /* optional, frees data */
+  PetscErrorCode (*create)(AbutMesh, DM *); /* required: the grid of the box */
+  PetscErrorCode (*keepfirst)(AbutMesh);    /* required: the current mesh is the first one, below which nothing is merged */
+  PetscErrorCode (*refine)(AbutMesh, const PetscBool[],
+                           DM *); /* required: the mesh with the marked cells (and what must follow) split, and others merged; a rank
+                                     may have no marks */
+  PetscErrorCode (*getlevels)(AbutMesh, PetscInt[]); /* required: level of each local cell of the current DM */
+  PetscErrorCode (*destroy)(AbutMesh);               /* optional, frees data */
 };
 
 #define ABUT_BOX_SIDES 4
@@ -43,11 +46,19 @@ struct _p_AbutMesh {
   PetscInt         nknots[ABUT_BOX_SIDES]; /* of the displacement along each side, see ties.c; 0: none */
   PetscReal       *knot[ABUT_BOX_SIDES];   /* [2*nknots] reference position and displacement */
   PetscBool        tiesmoved;              /* since the topology was made */
+  PetscBool       *coarsen;                /* [ncells] cells that the next adaptation may merge, NULL on all ranks: none */
   PetscBool        journal;                /* is kept */
   PetscInt         nsteps, maxsteps;
   AbutMeshStep     step; /* [nsteps] */
   void            *data;
 };
+
+/* Triangles: the first mesh, from which coarser ones are made, and the vertices that were taken out once, in order; see merge.c */
+typedef struct {
+  DM         first;
+  PetscInt   ngone;
+  PetscReal *gone; /* [2*ngone] */
+} AbutMesh_Triangles;
 
 /* Coordinate of the i-th line of the first grid; the last one is the side of the box to the last bit */
 static inline PetscReal AbutMeshGridLine_Private(AbutMesh mesh, PetscInt d, PetscInt i)
@@ -59,6 +70,8 @@ static inline PetscReal AbutMeshGridLine_Private(AbutMesh mesh, PetscInt d, Pets
 
 PETSC_INTERN PetscErrorCode AbutMeshCreate_Forest(AbutMesh);
 PETSC_INTERN PetscErrorCode AbutMeshCreate_Triangles(AbutMesh);
+PETSC_INTERN PetscErrorCode AbutTrianglesSplit_Private(DM, DMLabel, DM *);
+PETSC_INTERN PetscErrorCode AbutTrianglesMerge_Private(AbutMesh, const PetscBool[], DM *);
 PETSC_INTERN PetscErrorCode AbutMeshRefineToSize_Private(AbutMesh);
 PETSC_INTERN PetscErrorCode AbutMeshTopologyBuild_Private(AbutMesh);
 PETSC_INTERN PetscErrorCode AbutMeshTopologyReset_Private(AbutMesh);
@@ -68,6 +81,8 @@ PETSC_INTERN PetscErrorCode AbutMeshMoveToTies_Private(AbutMesh, PetscInt, Petsc
 PETSC_INTERN PetscErrorCode AbutJournalTies_Private(AbutMesh, PetscInt, const AbutTie[]);
 PETSC_INTERN PetscErrorCode AbutJournalAdapt_Private(AbutMesh, PetscBool, const PetscBool[]);
 PETSC_INTERN PetscErrorCode AbutJournalDestroy_Private(AbutMesh);
+PETSC_INTERN PetscErrorCode AbutPointsGather_Private(MPI_Comm, PetscInt, PetscInt, const PetscReal[], PetscInt *, PetscReal **);
+PETSC_INTERN int            AbutPointCompare_Private(const void *, const void *);
 PETSC_INTERN PetscErrorCode AbutMeshSidesBuild_Private(AbutMesh);
 PETSC_INTERN void           AbutMeshGetEdgeNodes_Private(const AbutMeshTopology *, PetscInt, PetscInt, PetscInt[]);
 PETSC_EXTERN PetscLogEvent  ABUTMESH_Adapt;
