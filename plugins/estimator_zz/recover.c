@@ -7,9 +7,8 @@ typedef struct {
   AbutPatchSpace space;
   PetscReal     *moment;   /* [moments*nvertices] */
   PetscReal     *boundary; /* [nvertices] above 0 on the boundary of the body */
-  PetscReal     *coef;     /* [coefs*nvertices] the polynomials, about the vertex */
-  PetscReal     *weight;   /* [nvertices] how good those are that were fitted there, 0 for others */
-  PetscBool     *done;     /* [nvertices] there are polynomials */
+  PetscReal     *coef;     /* [coefs*nvertices] the fitted stress, about the vertex; of those with unknowns */
+  PetscBool     *good;     /* [nvertices] it is to be relied on */
 } AbutPatches;
 
 static PetscErrorCode AbutPatchesGather_Private(const AbutSamples *a, AbutMesh mesh, const AbutMeshTopology *t, AbutPatches *p)
@@ -33,33 +32,26 @@ static PetscErrorCode AbutPatchesGather_Private(const AbutSamples *a, AbutMesh m
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Fits the patches that are good for one: all inner ones at first; if these leave vertices without a fit, all */
-static PetscErrorCode AbutPatchesFit_Private(const AbutMeshTopology *t, PetscBool all, AbutPatches *p)
+/* Samples of order 1 are not good enough for one-sided patches: C, eq. (23) of the paper, would be 0.5 instead of 0.2 */
+static PetscErrorCode AbutPatchesFit_Private(const AbutMeshTopology *t, AbutPatches *p)
 {
   PetscFunctionBegin;
   for (PetscInt v = 0; v < t->nvertices; ++v) {
-    const PetscReal *moment = p->moment + p->space.moments * v;
-    PetscReal       *coef   = p->coef + p->space.coefs * v;
-    PetscBool        plane;
-
-    if (t->unknown[v] < 0 || p->done[v] || (p->boundary[v] > 0. && !all)) continue;
-    AbutPatchFit_Private(&p->space, moment, coef, &plane);
-    if (!all && !plane) continue;
-    p->done[v]   = PETSC_TRUE;
-    p->weight[v] = t->order == 1 ? 1. : AbutPatchWeight_Private(&p->space, moment, coef);
+    if (t->unknown[v] < 0) continue;
+    AbutPatchFit_Private(&p->space, p->moment + p->space.moments * v, p->coef + p->space.coefs * v, &p->good[v]);
+    if (t->order == 1 && p->boundary[v] > 0.) p->good[v] = PETSC_FALSE;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Every vertex without a fit takes the mean of those it shares a cell with; tells how many that helped and how many are left. From order 2
-   on only cells without a fit at any corner ask what is handed on (see AbutPatchesAddNode_Private()). Such quads stand beside smaller ones,
-   several cells away from the samples, where a polynomial of high degree means nothing: what is linear is handed on. Such triangles are
-   those in corners, as small as their neighbours. */
-static PetscErrorCode AbutPatchesSpread_Private(AbutMesh mesh, const AbutMeshTopology *t, AbutPatches *p, PetscInt *helped, PetscInt *left)
+/* Every vertex without a stress of its own, done or handed on, takes the mean of those it shares a cell with; tells how many that helped
+   and how many are left */
+static PetscErrorCode AbutPatchesSpread_Private(AbutMesh mesh, const AbutMeshTopology *t, AbutPatches *p, PetscBool done[],
+                                                PetscInt *helped, PetscInt *left)
 {
   const PetscInt n = p->space.coefs, bs = n + 1;
   PetscInt       count[2] = {0, 0};
-  PetscReal     *sum, moved[3 * ABUT_PATCH_TERMS_MAX];
+  PetscReal     *sum, moved[ABUT_PATCH_COEFS_MAX];
 
   PetscFunctionBegin;
   PetscCall(PetscCalloc1(bs * t->nvertices, &sum));
@@ -68,8 +60,8 @@ static PetscErrorCode AbutPatchesSpread_Private(AbutMesh mesh, const AbutMeshTop
     const PetscInt  from = cell[k / t->corners % t->corners], to = cell[k % t->corners];
     const PetscReal d[2] = {t->x[2 * to] - t->x[2 * from], t->x[2 * to + 1] - t->x[2 * from + 1]};
 
-    if (t->unknown[to] < 0 || !p->done[from] || p->done[to]) continue;
-    AbutPatchShift_Private(&p->space, t->corners == 4 ? 1 : t->order, p->coef + n * from, d, moved);
+    if (t->unknown[to] < 0 || !done[from] || done[to]) continue;
+    AbutPatchShift_Private(p->coef + n * from, d, moved);
     for (PetscInt m = 0; m < n; ++m) sum[bs * to + m] += moved[m];
     sum[bs * to + n] += 1.;
   }
@@ -77,15 +69,30 @@ static PetscErrorCode AbutPatchesSpread_Private(AbutMesh mesh, const AbutMeshTop
   for (PetscInt v = 0; v < t->nvertices; ++v) {
     const PetscReal several = sum[bs * v + n];
 
-    if (t->unknown[v] < 0 || p->done[v]) continue;
+    if (t->unknown[v] < 0 || done[v]) continue;
     for (PetscInt m = 0; several > 0. && m < n; ++m) p->coef[n * v + m] = sum[bs * v + m] / several;
-    p->done[v] = several > 0. ? PETSC_TRUE : PETSC_FALSE;
-    ++count[p->done[v] ? 0 : 1];
+    done[v] = several > 0. ? PETSC_TRUE : PETSC_FALSE;
+    ++count[done[v] ? 0 : 1];
   }
   PetscCall(PetscFree(sum));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 2, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)mesh)));
   *helped = count[0];
   *left   = count[1];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Of order 1: those without a good fit ask their neighbours; if none has one, as in a body of one row of cells, they keep their own */
+static PetscErrorCode AbutPatchesHandOn_Private(AbutMesh mesh, const AbutMeshTopology *t, AbutPatches *p)
+{
+  PetscBool *done;
+  PetscInt   helped, left;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(t->nvertices, &done));
+  PetscCall(PetscArraycpy(done, p->good, t->nvertices));
+  do PetscCall(AbutPatchesSpread_Private(mesh, t, p, done, &helped, &left));
+  while (helped && left);
+  PetscCall(PetscFree(done));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -100,8 +107,8 @@ static void AbutHats_Private(PetscInt corners, const PetscReal xi[2], PetscReal 
   hat[3] = corners == 3 ? 0. : (1. - x) * y;
 }
 
-/* Adds to sum[4] what the corners of cell c say of its node k: weight times stress, weight. First, only corners with a fit of their own
-   speak, each as loud as its hat is high or, if no such hat reaches the node, all alike. */
+/* Adds to sum[4] what the corners of cell c say of its node k: stress, and how loud. First, only corners with a good fit speak, each as
+   loud as its hat is high or, if no such hat reaches the node, all alike. */
 static void AbutPatchesAddNode_Private(const AbutMeshTopology *t, const AbutPatches *p, PetscInt c, PetscInt k, const PetscReal xi[2],
                                        PetscBool any, PetscReal sum[4])
 {
@@ -111,15 +118,14 @@ static void AbutPatchesAddNode_Private(const AbutMeshTopology *t, const AbutPatc
   AbutHats_Private(t->corners, xi, hat);
   for (PetscInt i = 0; i < t->corners; ++i) {
     if (hat[i] < 1e-12) hat[i] = 0.; /* round-off: a node on a side is out of the reach of the corners beyond */
-    if (p->weight[t->cell[t->corners * c + i]] > 0. || any) reach += hat[i];
+    if (p->good[t->cell[t->corners * c + i]] || any) reach += hat[i];
   }
   for (PetscInt i = 0; i < t->corners; ++i) {
     const PetscInt  v    = t->cell[t->corners * c + i];
-    const PetscReal d[2] = {x[0] - t->x[2 * v], x[1] - t->x[2 * v + 1]};
-    const PetscReal w    = (any ? 1. : p->weight[v]) * (reach > 0. ? hat[i] : 1.);
+    const PetscReal d[2] = {x[0] - t->x[2 * v], x[1] - t->x[2 * v + 1]}, w = reach > 0. ? hat[i] : 1.;
     PetscReal       s[3];
 
-    if (w == 0. || !p->done[v]) continue;
+    if (w == 0. || t->unknown[v] < 0 || !(p->good[v] || any)) continue;
     AbutPatchEvaluate_Private(&p->space, p->coef + p->space.coefs * v, d, s);
     for (PetscInt j = 0; j < 3; ++j) sum[j] += w * s[j];
     sum[3] += w;
@@ -140,7 +146,7 @@ static PetscErrorCode AbutPatchesEvaluate_Private(AbutBody body, AbutMesh mesh, 
   PetscCall(PetscMalloc1(4 * t->nunknown, &sum));
   PetscCall(PetscCalloc1(t->nunknown, &done));
   PetscCall(PetscArrayzero(s, 3 * t->nnodes));
-  for (PetscInt any = 0; any < 2; ++any) { /* a triangle in a corner of the body may have no corner with a fit of its own */
+  for (PetscInt any = 0; any < 2; ++any) { /* a cell in a corner of the body may have no corner with a good fit */
     PetscCall(PetscArrayzero(sum, 4 * t->nunknown));
     for (PetscInt i = 0; i < t->nodes * t->ncells; ++i) {
       const PetscInt k = i % t->nodes, u = t->unknown[t->cellnode[i]];
@@ -164,29 +170,26 @@ static PetscErrorCode AbutPatchesEvaluate_Private(AbutBody body, AbutMesh mesh, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Polynomials at all vertices with unknowns */
+/* Fits at all vertices with unknowns. From order 2 on the samples of quads are so good that polynomials of degree order are worse. */
 static PetscErrorCode AbutPatchesSetUp_Private(const AbutSamples *a, AbutMesh mesh, const AbutMeshTopology *t, AbutPatches *p)
 {
-  PetscInt helped, left;
-
   PetscFunctionBegin;
-  AbutPatchSpaceSetUp_Private(t->corners, t->order, &p->space);
-  PetscCall(PetscCalloc5(p->space.moments * t->nvertices, &p->moment, t->nvertices, &p->boundary, p->space.coefs * t->nvertices, &p->coef,
-                         t->nvertices, &p->weight, t->nvertices, &p->done));
+  AbutPatchSpaceSetUp_Private(t->order + (t->corners == 4 && t->order > 1 ? 1 : 0), &p->space);
+  PetscCall(PetscCalloc4(p->space.moments * t->nvertices, &p->moment, t->nvertices, &p->boundary, p->space.coefs * t->nvertices, &p->coef,
+                         t->nvertices, &p->good));
   PetscCall(AbutPatchesGather_Private(a, mesh, t, p));
-  PetscCall(AbutPatchesFit_Private(t, PETSC_FALSE, p));
-  do PetscCall(AbutPatchesSpread_Private(mesh, t, p, &helped, &left));
-  while (helped && left);
-  PetscCall(AbutPatchesFit_Private(t, PETSC_TRUE, p)); /* a body without inner vertices */
+  PetscCall(AbutPatchesFit_Private(t, p));
+  if (t->order == 1) PetscCall(AbutPatchesHandOn_Private(mesh, t, p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The recovered stress at the nodes of the cells of this rank, [3*nodes*ncells].
 
    The continuous one of the patches is not the last word from order 2 on: beside a point where the stress is not smooth, as the edge of a
-   contact, its error is many times that of the finite elements (measured at order 4: 14 times). In quads the finite-element stress is best
-   at the samples; so it keeps its lower part, the polynomial through them, and the patches only say what comes on top. Where all is smooth
-   this changes next to nothing. Triangles have no such points: they keep what is of degree order-2. */
+   contact, its error is more than that of the finite elements (measured: 1.3 times in triangles of order 3, 3.5 times in quads of order
+   4). In quads the finite-element stress is best at the samples; so it keeps its lower part, the polynomial through them, and the patches
+   only say what comes on top. Where all is smooth this changes next to nothing. Triangles have no such points: they keep what is of degree
+   order-2. */
 PetscErrorCode AbutEstimatorRecover_ZZ(AbutBody body, PetscReal s[])
 {
   AbutMesh                mesh;
@@ -205,7 +208,7 @@ PetscErrorCode AbutEstimatorRecover_ZZ(AbutBody body, PetscReal s[])
   for (PetscInt i = 0; i < 3 * t->nodes * t->ncells; ++i) s[i] = atnode[3 * t->cellnode[i / 3] + i % 3];
   for (PetscInt c = 0; c < t->ncells && t->order > 1; ++c) PetscCall(AbutSamplesKeep_Private(samples, t, c, s + 3 * t->nodes * c));
   PetscCall(PetscFree(atnode));
-  PetscCall(PetscFree5(p.moment, p.boundary, p.coef, p.weight, p.done));
+  PetscCall(PetscFree4(p.moment, p.boundary, p.coef, p.good));
   PetscCall(AbutSamplesDestroy_Private(&samples));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -8,20 +8,26 @@
    Notes:
    Superconvergent patch recovery: O. C. Zienkiewicz and J. Z. Zhu, The superconvergent patch recovery and a posteriori error estimates,
    Int. J. Numer. Meth. Engng. 33 (1992). With cells of order p, the stress is sampled at p x p Gauss points of each cell; around every
-   vertex inside the body polynomials (x^i y^j with i, j <= p for quads, with i+j <= p for triangles) are fitted to the samples in the cells
-   that have the vertex as a corner. Their values at a node of a cell, weighed with the bilinear functions of the corners, are the recovered
-   stress of the node: T. Blacker and T. Belytschko, Superconvergent patch recovery with equilibrium and conjoint interpolant enhancements,
-   Int. J. Numer. Meth. Engng. 37 (1994). Corners on the boundary have no polynomials; a hanging node takes the function of its coarse side.
-   Between nodes the shape functions interpolate.
+   vertex a polynomial stress is fitted to the samples in the cells that have the vertex as a corner. Its values at a node of a cell,
+   weighed with the bilinear functions of the corners, are the recovered stress of the node: T. Blacker and T. Belytschko, Superconvergent
+   patch recovery with equilibrium and conjoint interpolant enhancements, Int. J. Numer. Meth. Engng. 37 (1994). A hanging node takes the
+   function of its coarse side. Between nodes the shape functions interpolate.
 
-   From order 2 on, a polynomial also weighs the less, the farther it is from its samples, and the samples keep their values in the
-   recovered stress (in triangles its part of degree p-2): beside the edge of a contact the patches alone would claim many times the error.
+   The polynomials are in balance, as N.-E. Wiberg and F. Abdulwahab proposed, Patch recovery based on superconvergent derivatives and
+   equilibrium, Int. J. Numer. Meth. Engng. 36 (1993), and compatible as well: those of Kolosov's and Muskhelishvili's potentials, phi' and
+   psi' of degree p, in quads from order 2 on of degree p+1. They are so few, 4p+3 of 3(p+1)(p+2)/2 for triangles, that vertices on the
+   boundary have their own, from cells on one side; of order 1 these take what inner vertices say.
 
-   Cheap, local, and for any material law: nothing is solved.
+   From order 2 on, the samples keep their values in the recovered stress (in triangles its part of degree p-2): beside the edge of a
+   contact the patches alone would claim up to three times the error.
 
-   Limits: at a singularity of the stress uniform meshes of order 1 are judged up to a quarter too well, quads of higher orders up to a
-   sixth, triangles of order 3 up to a fifth too badly. Cells beside a hanging side are judged too well (order 2 by a third, 3 by a half, 4
-   by two thirds): what its constraint spoils, the samples share. A body of one row of cells is judged along the row only.
+   Cheap and local: nothing is solved.
+
+   Limits: no body forces, one isotropic material. Where Hertz' pressure ends at a node, the estimate over the error is 0.91 to 1.05 for
+   quads, 0.93 to 1.02 for triangles, on the last three of five uniform meshes and of those refined there; where it ends inside a cell,
+   down to 0.4. At a stress without bound, under a sharp punch or at a corner, uniform meshes are judged too well by up to a third. Cells
+   beside a hanging side are judged too well (order 2 by a third, 3 by a half, 4 by two thirds): what its constraint spoils, the samples
+   share. Triangles of order 1 in one row are judged too well by a fifth.
 
 .seealso: `AbutEstimatorSetType()`, `AbutEstimatorCompareStress()`, `ABUTESTIMATORFEMBEM`
 M*/
