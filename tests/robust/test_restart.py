@@ -172,6 +172,14 @@ def test_files_that_are_no_checkpoint_of_this_scene_are_refused():
         run(*FOLLOWED, f"-restart {folder}/again -checkpoint {folder}/again")  # a run may write to the file it came from
 
 
+def test_a_cold_run_leaves_no_traces_to_begin_with():
+    with tempfile.TemporaryDirectory() as folder:
+        cold = run(*TRIANGLES, f"-scene_cold -checkpoint {folder}/last")
+        same(cold, run(*TRIANGLES, f"-scene_cold -restart {folder}/last"), 0)
+        result = run(*TRIANGLES, f"-restart {folder}/last", expect=1)
+        assert result.stderr == "abut: restart: the checkpoint has no traces to begin with; it was written with scene_cold: give that here, too\n", result.stderr
+
+
 def test_keys_that_cannot_be():
     assert "checkpoint: the scene has no adaptor" in run_error(STACK, "-checkpoint /tmp/abut_checkpoint")
     assert "checkpoint_every: 0 is no number of cycles" in run_error(*FOLLOWED, "-checkpoint /tmp/abut_checkpoint -checkpoint_every 0")
