@@ -13,6 +13,7 @@ STACK = os.path.join(ROOT, "examples", "stack", "stack.yml")
 FOLLOWED = (EXACT, "-lower_mesh_order 3 -upper_mesh_order 3 -adaptor_target 1e-3 -adaptor_jump 2 -adaptor_settle yes -adaptor_peak 1e-4")
 TRIANGLES = (EXACT, "-lower_mesh_order 2 -upper_mesh_order 2 -lower_mesh_shape triangle -upper_mesh_cells 6,2 -adaptor_target 5e-3")
 INTERLEAVED = (LAYERS, "-adaptor_threshold 0.2 -scene_interleave yes -snes_type ddneumann")
+STAYING = (INTERLEAVED[0], INTERLEAVED[1] + " -scene_eps_u 5e-4 -upper_mesh_cells 16,4")  # whose last cycles are on the same meshes
 COUNTED = re.compile(r"time\.|memory|residual|balance|complementarity|penetration|check|error\.loop|error\.linear|slack")
 
 
@@ -35,7 +36,7 @@ def same(one, other, tolerance):
 
 
 def test_a_run_that_goes_on_ends_as_if_it_had_not_been_stopped():
-    for scene in FOLLOWED, TRIANGLES, INTERLEAVED:
+    for scene in FOLLOWED, TRIANGLES, INTERLEAVED, STAYING:
         with tempfile.TemporaryDirectory() as folder:
             whole, cycles = stopped(folder, scene)
             assert len(cycles) > 4, cycles
