@@ -12,8 +12,8 @@ endif
 
 # What config/setup.sh found: CC, PYTHON, PETSC, DEPS_CFLAGS, DEPS_LIBS, CHECK_CFLAGS, CHECK_LIBS, SLEPC_CFLAGS, SLEPC_LIBS. It rewrites the file
 # only when an answer changed, and GNU make then starts again with the new one. Only the goals below may install packages, and only as root on Debian.
-INSTALLING = run test test-long suite fuzz check asan setup
-NO_SETUP   = clean deps deps-dev format lint
+INSTALLING = run test test-long suite fuzz check asan memcheck setup
+NO_SETUP   = clean deps deps-dev format lint coverage
 ifneq ($(filter-out $(NO_SETUP),$(or $(MAKECMDGOALS),all)),)
 include $(B)/config.mk
 endif
@@ -96,11 +96,29 @@ suite: all $(CHECKS)
 	@$(PYTHON) tests/run.py --build $(B) --suite --long $(T)
 test-long: all $(CHECKS)
 	@$(PYTHON) tests/run.py --build $(B) --long $(T)
-# random scenes; one that goes wrong is printed with the command that repeats it
-fuzz: all
+# random scenes, and what libFuzzer makes of files; one that goes wrong is printed with the command that repeats it
+fuzz: all deps-dev
 	@$(PYTHON) tests/fuzz/scenes.py --abut $(B)/bin/abut
-asan: # without the leak checker, which reports 122 kB of Open MPI; PETSc finds our own leaks: -malloc_dump -objects_dump
-	ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=halt_on_error=1 $(MAKE) B=$(B)/asan CFLAGS="-g -O1 -fno-omit-frame-pointer -fsanitize=address,undefined" test
+	@OMPI_CC=clang MPICH_CC=clang $(MAKE) B=$(B)/fuzz CFLAGS="$(FUZZ_CFLAGS)" $(B)/fuzz/tests/readers
+	@$(PYTHON) tests/fuzz/readers.py $(B)/fuzz/tests/readers $(B)/bin/abut --seconds $(FUZZ_SECONDS)
+$(B)/tests/readers: $(B)/obj/tests/fuzz/readers.o $(LIB) | all $(B)/tests
+	$(LINK) -fsanitize=fuzzer $< -o $@ -L$(B)/lib -labut $(RPATH) $(DEPS_LIBS) -lm
+FUZZ_CFLAGS   = -g -O1 -fno-omit-frame-pointer -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined
+FUZZ_SECONDS ?= 60
+# which lines of src/ and plugins/ all tests together run; warnings are the business of other builds
+coverage: deps-dev
+	@mkdir -p $(B)/coverage && find $(B)/coverage -name '*.gcda' -delete
+	-$(MAKE) B=$(B)/coverage CFLAGS="-g -O1 --coverage" WARNINGS= test-long
+	gcovr --root . --filter src/ --filter plugins/ --exclude plugins/template/ --sort-percentage --fail-under-line 90 $(B)/coverage/obj
+# the paper's loop and ours, with all that is written, in the memory checker; the paper's on coarser meshes: the same code in 400 sweeps
+MEMCHECK = valgrind --quiet --error-exitcode=9 --leak-check=full --errors-for-leak-kinds=definite --show-leak-kinds=definite \
+           --num-callers=40 --suppressions=tests/memcheck.supp $(B)/bin/abut $(subst out/,out/memcheck_,$(LAYERS))
+memcheck: all deps-dev
+	@mkdir -p out
+	$(MEMCHECK) -upper_mesh_cells 16,4 -snes_rtol 1e-3 -adaptor_threshold 0.2
+	$(MEMCHECK) -snes_type ddactive
+asan: # without the leak checker, which reports 122 kB of Open MPI; PETSc finds our own leaks; a test preloads the library of another program
+	ABUT_LEAKS=1 ASAN_OPTIONS=detect_leaks=0:verify_asan_link_order=0 UBSAN_OPTIONS=halt_on_error=1 $(MAKE) B=$(B)/asan CFLAGS="-g -O1 -fno-omit-frame-pointer -fsanitize=address,undefined" test
 
 setup: ; @:
 deps:
@@ -127,5 +145,5 @@ VERSION = $(shell sed -n 's/^version: *//p' CITATION.cff)
 clean:
 	rm -rf $(B) out
 FORCE:
-.PHONY: all run study-loops study-shares study-accuracy test test-long suite fuzz check asan setup deps deps-dev format lint install clean FORCE
+.PHONY: all run study-loops study-shares study-accuracy test test-long suite fuzz check asan coverage memcheck setup deps deps-dev format lint install clean FORCE
 .DELETE_ON_ERROR:

@@ -78,6 +78,13 @@ END
 }
 
 has_header() { has "$CC" && printf '#include <%s>\n' "$1" | "$CC" $cflags -E - >/dev/null 2>&1; }
+has_fuzzer() {
+  program=$(mktemp)
+  echo 'int LLVMFuzzerTestOneInput(void) { return 0; }' | clang -x c -fsanitize=fuzzer,address,undefined - -o "$program" 2>/dev/null
+  status=$?
+  rm -f "$program"
+  return $status
+}
 want() { missing="$missing\n  $1" packages="$packages $2"; }
 
 # Everything `need` asks for: what it is called, and the Debian packages that have it
@@ -94,7 +101,7 @@ find_missing() {
   [ -n "$python" ] || want "Python 3 with Matplotlib and h5py" "python3 python3-matplotlib python3-h5py"
   pc --exists check || want "Check, the unit test framework" "check"
   [ "$need" = all ] && return
-  has clang || want "clang" "clang"
+  has_fuzzer || want "clang with libFuzzer" "clang libclang-rt-dev"
   has valgrind || want "valgrind" "valgrind"
   has gcovr || want "gcovr" "gcovr"
   "$python" -c 'import ensurepip' 2>/dev/null || want "venv for Python 3" "python3-venv"

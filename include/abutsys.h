@@ -68,6 +68,7 @@ PETSC_EXTERN PetscErrorCode    AbutArchiveOpen(MPI_Comm, const char[], const cha
 PETSC_EXTERN PetscErrorCode    AbutArchiveWrite(AbutArchive, const char[]);
 PETSC_EXTERN PetscErrorCode    AbutArchiveReads(AbutArchive, PetscBool *);
 PETSC_EXTERN PetscErrorCode    AbutArchiveInts(AbutArchive, const char[], PetscInt, PetscInt[]);
+PETSC_EXTERN PetscErrorCode    AbutArchiveCount(AbutArchive, const char[], PetscInt *);
 PETSC_EXTERN PetscErrorCode    AbutArchiveReals(AbutArchive, const char[], PetscInt, PetscReal[]);
 PETSC_EXTERN PetscErrorCode    AbutArchiveString(AbutArchive, const char[], char **);
 PETSC_EXTERN PetscErrorCode    AbutArchiveFit(AbutArchive, const char[], const char[]);

@@ -4,11 +4,12 @@
     record = run("examples/layers/layers.yml", "-mid_pair_penalty 0.5", ranks=2)
     assert record["verdict"] == "converged" and abs(record["pair.mid.force"] - 123.) < 1.
 """
-import os, shlex, subprocess, tempfile
+import os, re, shlex, subprocess, tempfile
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 BUILD = os.environ.get("ABUT_BUILD", os.path.join(ROOT, "build"))
 PROGRAM = os.path.join(BUILD, "bin", "abut")
+LEAKS = ["-malloc_dump", "-objects_dump"] if os.environ.get("ABUT_LEAKS") else []  # PETSc prints what was not freed
 LAYERS = os.path.join(ROOT, "examples", "layers", "layers.yml")
 
 
@@ -69,13 +70,15 @@ def run(scene, *options, ranks=1, expect=0, limit=250):
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "record")
         command = ["mpiexec", "-n", str(ranks)] if ranks > 1 else []
-        command += [PROGRAM] + (["-options_file", str(scene)] if scene else []) + list(words(options)) + ["-record", path]
+        command += [PROGRAM] + (["-options_file", str(scene)] if scene else []) + list(words(options)) + ["-record", path] + LEAKS
         result = execute(command, limit)
         record = Record(read_record(path) if os.path.exists(path) else {})
     record.stdout, record.stderr, record.status = result.stdout, result.stderr, result.returncode
     assert expect is None or record.status == expect, (
         f"{shlex.join(command)}\nexit status {record.status}, expected {expect}\n{record.stdout}{record.stderr}"
     )
+    leaks = LEAKS and record.status != 1 and re.search(r"^The following objects were never freed|^\[ *\d+\] *\d+ bytes .*", record.stdout, re.M)
+    assert not leaks, f"{shlex.join(command)}\nleaves memory behind\n{record.stdout[leaks.start():]}"  # bad input, 1, ends where it is met
     return record
 
 

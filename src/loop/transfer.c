@@ -97,6 +97,9 @@ static PetscReal AbutOldTraceValue_Private(const AbutOldTrace *old, const PetscR
 PetscErrorCode AbutInterfaceTransferTrace(AbutInterface iface, Vec x)
 {
   PetscFunctionBegin;
+  for (PetscInt t = 0; t < 2 * iface->npairs; ++t)
+    AbutCheckInput(iface->old[t].n > 1 && iface->oldpressure[t / 2].n > 1, PetscObjectComm((PetscObject)iface),
+                   "restart: the checkpoint has no traces to begin with; it was written with scene_cold: give that here, too");
   for (PetscInt t = 0; t < 2 * iface->npairs; ++t) {
     AbutBody        bodies[2];
     PetscInt        sides[2], element = 0;
@@ -136,7 +139,7 @@ static PetscErrorCode AbutOldTraceArchive_Private(AbutOldTrace *old, AbutArchive
 
   PetscFunctionBegin;
   PetscCall(AbutArchiveReads(ar, &reads));
-  PetscCall(AbutArchiveInts(ar, "nodes of a side", 1, &old->n));
+  PetscCall(AbutArchiveCount(ar, "nodes of a side", &old->n));
   if (reads) {
     PetscCall(PetscFree2(old->x, old->value));
     PetscCall(PetscMalloc2(2 * old->n, &old->x, old->n, &old->value));

@@ -168,6 +168,14 @@ static PetscInt AbutJournalFind_Private(const AbutMeshTopology *t, PetscInt n, c
   return found;
 }
 
+/* Whether three numbers are a tie of the mesh: a vertex between the ends of a side */
+static PetscBool AbutJournalHasTie_Private(AbutMesh mesh, const PetscReal value[3])
+{
+  const PetscInt d = !(value[0] >= 2.);
+
+  return (PetscBool)(value[0] >= 0. && value[0] < ABUT_BOX_SIDES && value[1] > mesh->lower[d] && value[1] < mesh->upper[d]);
+}
+
 /* Does again what the journal says */
 static PetscErrorCode AbutJournalReplay_Private(AbutMesh mesh, PetscInt kind, PetscInt n, const PetscReal value[], PetscBool *same)
 {
@@ -180,8 +188,11 @@ static PetscErrorCode AbutJournalReplay_Private(AbutMesh mesh, PetscInt kind, Pe
   *same = PETSC_TRUE;
   if (kind == ABUT_STEP_TIES) {
     PetscCall(PetscMalloc1(n, &tie));
-    for (PetscInt i = 0; i < n; ++i) tie[i] = (AbutTie){(PetscInt)value[3 * i], value[3 * i + 1], value[3 * i + 2]};
-    PetscCall(AbutMeshSetTies(mesh, n, tie));
+    for (PetscInt i = 0; i < n && *same; ++i) {
+      *same = AbutJournalHasTie_Private(mesh, value + 3 * i);
+      if (*same) tie[i] = (AbutTie){(PetscInt)value[3 * i], value[3 * i + 1], value[3 * i + 2]};
+    }
+    if (*same) PetscCall(AbutMeshSetTies(mesh, n, tie));
     PetscCall(PetscFree(tie));
   } else if (kind == ABUT_STEP_MOVE) PetscCall(AbutMeshAdapt(mesh, NULL));
   else {
@@ -226,7 +237,7 @@ PetscErrorCode AbutMeshArchive(AbutMesh mesh, AbutArchive ar)
                           (int)mesh->order, (int)mesh->cells[0], (int)mesh->cells[1], (double)mesh->lower[0], (double)mesh->lower[1],
                           (double)mesh->upper[0], (double)mesh->upper[1]));
   PetscCall(AbutArchiveFit(ar, "its mesh", text));
-  PetscCall(AbutArchiveInts(ar, "splits", 1, &steps));
+  PetscCall(AbutArchiveCount(ar, "splits", &steps));
   for (PetscInt i = 0; i < steps && same; ++i) {
     PetscInt   title[2];
     PetscReal *value = NULL;
@@ -237,8 +248,12 @@ PetscErrorCode AbutMeshArchive(AbutMesh mesh, AbutArchive ar)
       if (title[0] >= ABUT_STEP_SPLIT) PetscCall(AbutPointsGather_Private(comm, 2, title[1], mesh->step[i].value, &title[1], &value));
     }
     PetscCall(AbutArchiveInts(ar, "split", 2, title));
+    PetscCall(AbutMeshGetCellCount(mesh, &cells));
+    same = (PetscBool)(!reads || (title[1] >= 0 && title[1] <= 4 * cells)); /* marks of cells, or ties of their corners */
+    if (!same) break;
     if (reads) PetscCall(PetscMalloc1(3 * title[1], &value));
-    PetscCall(AbutArchiveReals(ar, "split cells", (title[0] == ABUT_STEP_TIES ? 3 : 2) * title[1], value ? value : mesh->step[i].value));
+    PetscCall(AbutArchiveReals(ar, "split cells", (title[0] == ABUT_STEP_TIES ? 3 : 2) * title[1],
+                               value || reads ? value : mesh->step[i].value));
     if (reads) PetscCall(AbutJournalReplay_Private(mesh, title[0], title[1], value, &same));
     PetscCall(PetscFree(value));
   }

@@ -15,7 +15,7 @@ static PetscErrorCode AbutRecorderArchiveRows_Private(AbutRecorder rec, AbutArch
 
   PetscFunctionBegin;
   PetscCall(AbutArchiveReads(ar, &reads));
-  PetscCall(AbutArchiveInts(ar, "rows", 1, &rec->nrows));
+  PetscCall(AbutArchiveCount(ar, "rows", &rec->nrows));
   if (reads) {
     rec->maxrows = rec->nrows;
     PetscCall(PetscMalloc1(rec->nrows, &rec->row));
@@ -23,7 +23,7 @@ static PetscErrorCode AbutRecorderArchiveRows_Private(AbutRecorder rec, AbutArch
   for (PetscInt i = 0; i < rec->nrows; ++i) {
     AbutRecorderRow *row = &rec->row[i];
 
-    PetscCall(AbutArchiveInts(ar, "columns", 1, &row->n));
+    PetscCall(AbutArchiveCount(ar, "columns", &row->n));
     if (reads) PetscCall(PetscMalloc1(row->n + 1, &row->value));
     if (reads) row->value[row->n] = NULL;
     PetscCall(AbutRecorderArchiveStrings_Private(ar, "value", row->n, row->value));
@@ -44,7 +44,7 @@ static PetscErrorCode AbutRecorderArchiveParts_Private(AbutRecorder rec, AbutArc
     PetscCall(PetscStrcmp(output, rec->output_file ? rec->output_file : "", &same));
     PetscCall(PetscFree(output));
   }
-  PetscCall(AbutArchiveInts(ar, "fields", 1, &rec->nparts));
+  PetscCall(AbutArchiveCount(ar, "fields", &rec->nparts));
   if (reads) {
     rec->maxparts = rec->nparts;
     PetscCall(PetscCalloc1(rec->nparts, &rec->part));
@@ -89,7 +89,7 @@ PetscErrorCode AbutRecorderArchive(AbutRecorder rec, AbutArchive ar)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(rec, ABUTRECORDER_CLASSID, 1);
   PetscCall(AbutArchiveReads(ar, &reads));
-  PetscCall(AbutArchiveInts(ar, "keys", 1, &rec->nkeys));
+  PetscCall(AbutArchiveCount(ar, "keys", &rec->nkeys));
   if (reads) {
     rec->maxkeys = rec->nkeys;
     PetscCall(PetscRealloc(sizeof(char *) * rec->nkeys, &rec->key));

@@ -44,13 +44,15 @@ static PetscErrorCode AbutSceneArchiveEdges_Private(AbutScene scene, AbutArchive
 
   PetscFunctionBegin;
   PetscCall(AbutArchiveReads(ar, &reads));
-  PetscCall(AbutArchiveInts(ar, "edges of contacts", 1, &scene->nedges));
+  PetscCall(AbutArchiveCount(ar, "edges of contacts", &scene->nedges));
   if (reads) PetscCall(PetscMalloc1(scene->nedges, &scene->edge));
   for (PetscInt e = 0; e < scene->nedges; ++e) {
     AbutContactEdge *edge = &scene->edge[e];
 
     PetscCall(AbutArchiveInts(ar, "pair of an edge", 1, &edge->pair));
     PetscCall(AbutArchiveReals(ar, "place of an edge", 2, edge->x));
+    AbutCheckInput(edge->pair >= 0 && edge->pair < scene->npairs, PetscObjectComm((PetscObject)scene),
+                   "restart: the checkpoint is damaged: an edge of a contact is that of pair %" PetscInt_FMT, edge->pair);
     if (reads) PetscCall(AbutPairGetBodies(scene->pair[edge->pair], edge->body, edge->side));
   }
   PetscCall(AbutArchiveInts(ar, "tied vertices", scene->npairs, scene->tied));

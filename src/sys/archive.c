@@ -1,15 +1,11 @@
-#include <abutsys.h> /*I "abutsys.h" I*/
+#include <abut/private/sysimpl.h> /*I "abutsys.h" I*/
 #include <errno.h>
 #include <string.h>
 
-/* A header of five numbers, and the values one after another: length of the name and the name, kind, count, and the values; whole numbers
-   are 64 bits long, reals are doubles */
+/* The file of an archive: a header of five numbers, and the values as values.c puts them */
 
 #define ABUT_ARCHIVE_MAGIC   0x6576696863724142 /* "BArchive" */
 #define ABUT_ARCHIVE_VERSION 1
-#define ABUT_ARCHIVE_NAME    64
-
-typedef long long AbutWord; /* of the file: 64 bits everywhere */
 
 typedef struct {
   AbutWord magic, version, order, size; /* order: of bytes */
@@ -17,15 +13,6 @@ typedef struct {
 } AbutArchiveHeader;
 
 #define ABUT_ARCHIVE_ORDER 0x0102030405060708
-
-struct _n_AbutArchive {
-  MPI_Comm    comm;
-  PetscMPIInt rank;
-  char       *file; /* what is read; NULL while it is filled */
-  char       *key;  /* the option that names it */
-  char       *byte;
-  size_t      size, room, at;
-};
 
 /* FNV-1a of 64 bits, http://www.isthe.com/chongo/tech/comp/fnv */
 static AbutWord AbutArchiveSum_Private(size_t n, const char byte[])
@@ -182,174 +169,6 @@ PetscErrorCode AbutArchiveReads(AbutArchive ar, PetscBool *reads)
 {
   PetscFunctionBegin;
   *reads = (PetscBool)(ar->file != NULL);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Bytes into the archive, on rank 0 */
-static PetscErrorCode AbutArchivePut_Private(AbutArchive ar, size_t n, const void *from)
-{
-  PetscFunctionBegin;
-  if (ar->rank || !n) PetscFunctionReturn(PETSC_SUCCESS);
-  if (ar->size + n > ar->room) {
-    ar->room = 2 * (ar->size + n);
-    PetscCall(PetscRealloc(ar->room, &ar->byte));
-  }
-  memcpy(ar->byte + ar->size, from, n);
-  ar->size += n;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Bytes out of it: those that should be there */
-static PetscErrorCode AbutArchiveGet_Private(AbutArchive ar, const char name[], size_t n, void *to)
-{
-  PetscFunctionBegin;
-  AbutCheckInput(ar->at + n <= ar->size, ar->comm, "%s: %s has no %s; it belongs to another scene", ar->key, ar->file, name);
-  memcpy(to, ar->byte + ar->at, n);
-  ar->at += n;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The name, kind and count of what follows; n < 0: any count */
-static PetscErrorCode AbutArchiveTitle_Private(AbutArchive ar, const char name[], AbutWord kind, PetscInt *n)
-{
-  char     there[ABUT_ARCHIVE_NAME] = "", mine[ABUT_ARCHIVE_NAME] = "";
-  AbutWord title[2] = {kind, *n};
-
-  PetscFunctionBegin;
-  PetscCall(PetscStrncpy(mine, name, sizeof(mine)));
-  if (!ar->file) {
-    PetscCall(AbutArchivePut_Private(ar, sizeof(mine), mine));
-    PetscCall(AbutArchivePut_Private(ar, sizeof(title), title));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(AbutArchiveGet_Private(ar, name, sizeof(there), there));
-  PetscCall(AbutArchiveGet_Private(ar, name, sizeof(title), title));
-  AbutCheckInput(!strncmp(there, mine, sizeof(there)) && title[0] == kind && (*n < 0 || title[1] == *n), ar->comm,
-                 "%s: %s has no %s; it belongs to another scene", ar->key, ar->file, name);
-  *n = (PetscInt)title[1];
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@C
-   AbutArchiveInts - Whole numbers into or out of an archive
-
-   Collective
-
-   Input Parameters:
-+  ar   - the archive
-.  name - what they are, in a message to the user; at most 63 letters
--  n    - how many
-
-   Input/Output Parameter:
-.  value - [n] the numbers; where the archive is filled those of rank 0 count, where it is read all ranks get them
-
-   Level: developer
-
-.seealso: `AbutArchiveReals()`, `AbutArchiveString()`
-@*/
-PetscErrorCode AbutArchiveInts(AbutArchive ar, const char name[], PetscInt n, PetscInt value[])
-{
-  PetscFunctionBegin;
-  PetscCall(AbutArchiveTitle_Private(ar, name, 'i', &n));
-  for (PetscInt i = 0; i < n; ++i) {
-    AbutWord word;
-
-    if (ar->file) {
-      PetscCall(AbutArchiveGet_Private(ar, name, sizeof(word), &word));
-      value[i] = (PetscInt)word;
-    } else {
-      word = value[i];
-      PetscCall(AbutArchivePut_Private(ar, sizeof(word), &word));
-    }
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@C
-   AbutArchiveReals - Numbers into or out of an archive, to the last bit
-
-   Collective
-
-   Input Parameters:
-+  ar   - the archive
-.  name - what they are, in a message to the user; at most 63 letters
--  n    - how many
-
-   Input/Output Parameter:
-.  value - [n] the numbers; where the archive is filled those of rank 0 count and other ranks may give `NULL`, where it is read all ranks
-           get them
-
-   Level: developer
-
-.seealso: `AbutArchiveInts()`
-@*/
-PetscErrorCode AbutArchiveReals(AbutArchive ar, const char name[], PetscInt n, PetscReal value[])
-{
-  PetscFunctionBegin;
-  PetscCall(AbutArchiveTitle_Private(ar, name, 'r', &n));
-  if (ar->file) PetscCall(AbutArchiveGet_Private(ar, name, sizeof(PetscReal) * n, value));
-  else PetscCall(AbutArchivePut_Private(ar, sizeof(PetscReal) * n, value));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@C
-   AbutArchiveString - A text into or out of an archive
-
-   Collective
-
-   Input Parameters:
-+  ar   - the archive
--  name - what it is, in a message to the user; at most 63 letters
-
-   Input/Output Parameter:
-.  text - the text; where the archive is read, a new one, to be freed with `PetscFree()`
-
-   Level: developer
-
-.seealso: `AbutArchiveInts()`, `AbutArchiveFit()`
-@*/
-PetscErrorCode AbutArchiveString(AbutArchive ar, const char name[], char **text)
-{
-  PetscInt n = ar->file ? -1 : (PetscInt)strlen(*text);
-
-  PetscFunctionBegin;
-  PetscCall(AbutArchiveTitle_Private(ar, name, 's', &n));
-  if (!ar->file) {
-    PetscCall(AbutArchivePut_Private(ar, n, *text));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(PetscCalloc1(n + 1, text));
-  PetscCall(AbutArchiveGet_Private(ar, name, n, *text));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@C
-   AbutArchiveFit - A text that must be the same where the archive is filled and where it is read: what a scene has to have in common
-
-   Collective
-
-   Input Parameters:
-+  ar   - the archive
-.  name - what it is, in a message to the user; at most 63 letters
--  text - the text here
-
-   Level: developer
-
-   Note:
-   Another text in the archive is a bad input that shows both.
-
-.seealso: `AbutArchiveString()`
-@*/
-PetscErrorCode AbutArchiveFit(AbutArchive ar, const char name[], const char text[])
-{
-  char *there = (char *)text;
-
-  PetscFunctionBegin;
-  PetscCall(AbutArchiveString(ar, name, &there));
-  if (!ar->file) PetscFunctionReturn(PETSC_SUCCESS);
-  AbutCheckInput(!strcmp(there, text), ar->comm, "%s: %s is of another scene: %s is \"%s\" there and \"%s\" here", ar->key, ar->file, name,
-                 there, text);
-  PetscCall(PetscFree(there));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

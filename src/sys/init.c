@@ -2,17 +2,27 @@
 #include <abut/private/sysimpl.h>
 #include <ctype.h>
 
+/* A text of the user's in a message may have line breaks, and anything else */
+static void AbutOneLine_Private(const char mess[], size_t len, char said[])
+{
+  snprintf(said, len, "%s", mess);
+  for (char *c = said; *c; ++c)
+    if (iscntrl((unsigned char)*c)) *c = ' ';
+}
+
 /* Where the message of a bad input goes, and that of a file that could not be written: one line, once, from the first rank. Everything
    else is a defect and keeps PETSc's traceback. */
 static PetscErrorCode AbutErrorHandler_Private(MPI_Comm comm, int line, const char *fun, const char *file, PetscErrorCode n,
                                                PetscErrorType p, const char *mess, void *ctx)
 {
+  char        said[4 * ABUT_MESSAGE];
   PetscMPIInt rank = 0;
 
   if (n != PETSC_ERR_USER_INPUT && n != PETSC_ERR_FILE_WRITE) return PetscTraceBackErrorHandler(comm, line, fun, file, n, p, mess, ctx);
   if (p != PETSC_ERROR_INITIAL) return n;
   if (comm != PETSC_COMM_SELF) MPI_Comm_rank(comm, &rank);
-  if (!rank) fprintf(stderr, "abut: %s\n", mess);
+  AbutOneLine_Private(mess, sizeof(said), said);
+  if (!rank) fprintf(stderr, "abut: %s\n", said);
   return n;
 }
 
@@ -20,12 +30,7 @@ static PetscErrorCode AbutErrorHandler_Private(MPI_Comm comm, int line, const ch
 PetscErrorCode AbutErrorKeep_Private(PETSC_UNUSED MPI_Comm comm, PETSC_UNUSED int line, PETSC_UNUSED const char *fun,
                                      PETSC_UNUSED const char *file, PetscErrorCode n, PetscErrorType p, const char *mess, void *ctx)
 {
-  char *said = (char *)ctx;
-
-  if (p != PETSC_ERROR_INITIAL) return n;
-  snprintf(said, ABUT_MESSAGE, "%s", mess);
-  for (char *c = said; *c; ++c)
-    if (*c == '\n' || *c == '\r') *c = ' ';
+  if (p == PETSC_ERROR_INITIAL) AbutOneLine_Private(mess, ABUT_MESSAGE, (char *)ctx);
   return n;
 }
 
@@ -138,7 +143,7 @@ PetscErrorCode AbutInitialize(int *argc, char ***args, const char help[])
                  "with a dash",
                  stray);
   PetscCall(AbutInsertScene_Private(nfiles, files));
-  free(files); /* PETSc keeps pointing into rest, as it does into argv: it lives as long as the program */
+  free(files); /* PETSc keeps pointing into rest, as it does into argv: AbutFinalize() frees it */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -153,10 +158,16 @@ PetscErrorCode AbutInitialize(int *argc, char ***args, const char help[])
 @*/
 PetscErrorCode AbutFinalize(void)
 {
-  PetscBool given; /* no PetscFunctionBegin: PetscFinalize() destroys the stack this function would stand on */
+  PetscBool      given; /* no PetscFunctionBegin: PetscFinalize() destroys the stack this function would stand on */
+  int            argc;
+  char         **args;
+  PetscErrorCode ierr;
 
   PetscCall(PetscPopErrorHandler());
   PetscCall(PetscOptionsHasName(NULL, NULL, "-options_left", &given));
   if (!given) PetscCall(PetscOptionsSetValue(NULL, "-options_left", "no")); /* AbutOptionsCheckAllRead() has said it, in one line */
-  return PetscFinalize();
+  PetscCall(PetscGetArgs(&argc, &args));
+  ierr = PetscFinalize();
+  free(args); /* made by AbutInitialize() */
+  return ierr;
 }

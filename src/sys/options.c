@@ -66,7 +66,8 @@ static PetscErrorCode AbutOptionsNumbers_Private(AbutOptionItems PetscOptionsObj
     const int    last = i + 1 == n;
 
     while (*end == ' ') ++end;
-    AbutCheckInput(end != at && *end == (last ? '\0' : ',') && PetscIsNormalReal(v ? v : 1.) && (!integer || (v == (double)(PetscInt)v)),
+    AbutCheckInput(end != at && *end == (last ? '\0' : ',') && PetscIsNormalReal(v ? v : 1.) &&
+                     (!integer || (PetscAbsReal(v) <= PETSC_MAX_INT && v == (PetscInt)v)),
                    PetscOptionsObject->comm, "%s: \"%s\" is not %s (%s)", key, given, kind, text);
     value[i] = v;
     at       = end + 1;

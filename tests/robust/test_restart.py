@@ -14,6 +14,7 @@ FOLLOWED = (EXACT, "-lower_mesh_order 3 -upper_mesh_order 3 -adaptor_target 1e-3
 TRIANGLES = (EXACT, "-lower_mesh_order 2 -upper_mesh_order 2 -lower_mesh_shape triangle -upper_mesh_cells 6,2 -adaptor_target 5e-3")
 MERGED = (EXACT, "-lower_mesh_shape triangle -lower_mesh_cells 3,1 -upper_mesh_cells 3,1 -adaptor_jump 8 -adaptor_target 5e-3 -adaptor_coarsen 0.2")
 INTERLEAVED = (LAYERS, "-adaptor_threshold 0.2 -scene_interleave yes -snes_type ddneumann")
+STAYING = (INTERLEAVED[0], INTERLEAVED[1] + " -scene_eps_u 5e-4 -upper_mesh_cells 16,4")  # whose last cycles are on the same meshes
 COUNTED = re.compile(r"time\.|memory|residual|balance|complementarity|penetration|check|error\.loop|error\.linear|slack")
 
 
@@ -36,7 +37,7 @@ def same(one, other, tolerance):
 
 
 def test_a_run_that_goes_on_ends_as_if_it_had_not_been_stopped():
-    for scene in FOLLOWED, TRIANGLES, MERGED, INTERLEAVED:
+    for scene in FOLLOWED, TRIANGLES, MERGED, INTERLEAVED, STAYING:
         with tempfile.TemporaryDirectory() as folder:
             whole, cycles = stopped(folder, scene)
             assert len(cycles) > 4, cycles
@@ -171,6 +172,14 @@ def test_files_that_are_no_checkpoint_of_this_scene_are_refused():
         assert "restart: " in run_error(*FOLLOWED, f"-restart {folder}/nowhere")
         shutil.copy(f"{folder}/good", f"{folder}/again")
         run(*FOLLOWED, f"-restart {folder}/again -checkpoint {folder}/again")  # a run may write to the file it came from
+
+
+def test_a_cold_run_leaves_no_traces_to_begin_with():
+    with tempfile.TemporaryDirectory() as folder:
+        cold = run(*TRIANGLES, f"-scene_cold -checkpoint {folder}/last")
+        same(cold, run(*TRIANGLES, f"-scene_cold -restart {folder}/last"), 0)
+        result = run(*TRIANGLES, f"-restart {folder}/last", expect=1)
+        assert result.stderr == "abut: restart: the checkpoint has no traces to begin with; it was written with scene_cold: give that here, too\n", result.stderr
 
 
 def test_keys_that_cannot_be():

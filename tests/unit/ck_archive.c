@@ -77,6 +77,31 @@ START_TEST(another_name_kind_or_number_is_refused)
 }
 END_TEST
 
+START_TEST(counts_beyond_the_file_and_values_that_are_none_are_refused)
+{
+  const PetscInt count[3] = {-1, 89, 88}, rest = 88; /* bytes of one number with its title */
+
+  for (PetscInt i = 0; i < 3; ++i) {
+    PetscInt       n     = count[i];
+    PetscReal      value = i ? NAN : 1.;
+    AbutArchive    ar;
+    PetscErrorCode code = PETSC_SUCCESS;
+
+    CkOk(AbutArchiveCreate(PETSC_COMM_WORLD, &ar));
+    CkOk(AbutArchiveCount(ar, "things", &n));
+    CkOk(AbutArchiveReals(ar, "value", 1, &value));
+    CkOk(AbutArchiveWrite(ar, CkPath("archive")));
+    CkOk(AbutArchiveDestroy(&ar));
+    CkOk(AbutArchiveOpen(PETSC_COMM_WORLD, "restart", CkPath("archive"), &ar));
+    CkCatch(code = AbutArchiveCount(ar, "things", &n));
+    ck_assert_int_eq(code, n < 0 || n > rest ? PETSC_ERR_USER_INPUT : PETSC_SUCCESS);
+    CkCatch(code = AbutArchiveReals(ar, "value", 1, &value));
+    ck_assert_int_eq(code, i ? PETSC_ERR_USER_INPUT : PETSC_SUCCESS);
+    CkOk(AbutArchiveDestroy(&ar));
+  }
+}
+END_TEST
+
 int main(int argc, char **argv)
 {
   Suite *suite = suite_create("archive");
@@ -87,6 +112,7 @@ int main(int argc, char **argv)
   tcase_add_checked_fixture(tests, CkFolderMake, CkFolderRemove);
   tcase_add_test(tests, what_went_in_comes_out);
   tcase_add_test(tests, another_name_kind_or_number_is_refused);
+  tcase_add_test(tests, counts_beyond_the_file_and_values_that_are_none_are_refused);
   suite_add_tcase(suite, tests);
   failed = CkRun(suite);
   return AbutFinalize() || failed ? EXIT_FAILURE : EXIT_SUCCESS;

@@ -45,7 +45,8 @@ static Contact Make(PetscInt order, PetscReal theta, const char pressures[])
 
 static void Destroy(Contact *c)
 {
-  CkOk(PetscFree3(c->u[0], c->u[1], c->p));
+  for (PetscInt s = 0; s < 2; ++s) CkOk(PetscFree(c->u[s]));
+  CkOk(PetscFree(c->p));
   CkOk(AbutPairDestroy(&c->pair));
   for (PetscInt b = 0; b < 2; ++b) CkOk(AbutBodyDestroy(&c->body[b]));
 }

@@ -25,3 +25,14 @@ PETSC_INTERN PetscErrorCode AbutErrorKeep_Private(MPI_Comm, int, const char *, c
     AbutCheckInput(ierr_ != PETSC_ERR_USER_INPUT, comm, "%s", said_); \
     AbutCheckInput(!ierr_, comm, "%s: %s", what, said_); \
   } while (0)
+
+typedef long long AbutWord; /* of the file: 64 bits everywhere */
+
+struct _n_AbutArchive {
+  MPI_Comm    comm;
+  PetscMPIInt rank;
+  char       *file; /* what is read; NULL while it is filled */
+  char       *key;  /* the option that names it */
+  char       *byte;
+  size_t      size, room, at;
+};
