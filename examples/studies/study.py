@@ -1,8 +1,10 @@
 """What the studies share: runs side by side, whose rows are kept in a CSV file as they come, so that a study goes on where it was stopped;
-what a run took; on which machine; meshes of an adaptive series one by one; errors of nodal pressures; a target and the first mesh that meets it."""
+what a run took, and on which machine; points of other programs; meshes of an adaptive series one by one; errors of nodal pressures; the
+first mesh that meets a target."""
 import collections, concurrent.futures, csv, os, subprocess, tempfile, threading, time
 
 TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+NUMBERS = "unknowns bodies sweeps cpu_s cum_cpu_s memory_MB err_P err_p0 err_energy err_p_L2".split()
 Took = collections.namedtuple("Took", "status said cpu wall rss")  # of a command: last line it said, CPU and wall seconds, bytes
 
 
@@ -22,6 +24,28 @@ def read(path):
         return []
     with open(path) as f:
         return list(csv.DictReader(line for line in f if not line.startswith("#")))
+
+
+def points(path):
+    """What other programs took, in the format of examples/studies/compare: numbers under the names of the study of cost, or None"""
+    found = []
+    for line, row in enumerate(read(path), 1):
+        one = {"program": row.get("program"), "variant": row.get("variant") or "", "scene": row.get("scene") or "layers"}
+        if not one["program"] or not row.get("unknowns"):
+            raise SystemExit(f"{path}, row {line}: wants at least program and unknowns; examples/studies/compare/README.md has the columns")
+        try:
+            value = {key: float(text) for key, text in row.items() if key in NUMBERS and text}
+        except ValueError as error:
+            raise SystemExit(f"{path}, row {line}: {error}; columns {', '.join(NUMBERS)} are numbers") from None
+        times = 2 if value.get("bodies") == 1 else 1
+        own = value.get("cum_cpu_s", value.get("cpu_s"))
+        one.update(unknowns=times * value["unknowns"], cpu_s=own and times * own, rss_MB=value.get("memory_MB"))
+        one["work"] = one["unknowns"] * value["sweeps"] if "sweeps" in value else None
+        one.update((key, value.get(key)) for key in NUMBERS if key.startswith("err_"))
+        found.append(one)
+    if not found:
+        raise SystemExit(f"{path}: no rows; examples/studies/compare/README.md has the format")
+    return found
 
 
 def side_by_side(processes, run, cases, keep):
@@ -52,7 +76,7 @@ class Kept:
         def keep(case, rows, done, total):
             with self.lock:
                 append(self.path, self.columns, rows)
-                self.rows[case] = [{key: str(value) for key, value in row.items()} for row in rows]
+                self.rows[case] = [{key: str(row.get(key, "")) for key in self.columns} for row in rows]
                 print(f"{done:4}/{total}  {named(case):60}{len(rows):3} rows  {rows[-1]['verdict'][:60]}", flush=True)
 
         side_by_side(processes, run, todo, keep)

@@ -17,7 +17,7 @@ SCENE = os.path.join(HERE, "layers_exact.yml")
 EXAMPLES = os.path.dirname(os.path.dirname(HERE))
 sys.path[:0] = [os.path.join(EXAMPLES, "layers"), EXAMPLES, os.path.dirname(HERE)]
 from layers import number, profile, record  # noqa: E402
-from study import append, chebyshev, cpu_of, ends, first_that, load, pressure_error, read, side_by_side  # noqa: E402
+from study import append, chebyshev, cpu_of, ends, first_that, load, points, pressure_error, side_by_side  # noqa: E402
 
 ORDERS = (1, 2, 3, 4)
 ESTIMATORS = ("zz", "residual", "fembem")
@@ -211,11 +211,7 @@ def least(study, cases):
     """Of every target and order the case with the least CPU, and what the peers took"""
     yield "\n| target | order | CPU [s] | meshes | sweeps | unknowns | by | NGSolve: CPU [s] |\n|---|---|---|---|---|---|---|---|"
     for target in TARGETS:
-        ngsolve = [
-            float(row["cum_cpu_s"])
-            for row in peers("ngsolve", "ZZ")
-            if float(row["err_P"]) <= target[0] and float(row["err_p0"]) <= target[1]
-        ]
+        ngsolve = [row["cpu_s"] for row in peers("ngsolve", "ZZ") if row["err_P"] <= target[0] and row["err_p0"] <= target[1]]
         for order in ORDERS:
             mine = [case for case in cases if case[:4] == (*SCENE_KEY, order)]
             found = [(float(row["cpu"]), row, case) for case in mine for row in [met(case, study.cases.get(case, []), target)] if row]
@@ -227,7 +223,7 @@ def least(study, cases):
 
 
 def peers(program, *variants):
-    rows = read(os.path.join(HERE, "peers.csv"))
+    rows = points(os.path.join(HERE, "peers.csv"))
     return [row for row in rows if row["program"] == program and row["err_P"] and any(variant in row["variant"] for variant in variants)]
 
 
@@ -237,11 +233,9 @@ def draw(study, folder):
     figure, axes = plt.subplots(2, 2, figsize=(11, 7.5))
     for (program, variants), marker in zip(PEERS.items(), "x+1234"):
         mine = peers(program, *variants)
-        twice = 2 if program == "dealii" else 1  # one body
-        for axis, column in zip(axes.T, ("unknowns", "cum_cpu_s")):
+        for axis, column in zip(axes.T, ("unknowns", "cpu_s")):
             for one, error in zip(axis, ("err_P", "err_p0")):
-                x = [twice * float(row[column] or row["cpu_s"] if column == "cum_cpu_s" else row[column]) for row in mine]
-                one.loglog(x, [float(row[error]) for row in mine], marker, color="0.5", ms=5, label=program)
+                one.loglog([row[column] for row in mine], [row[error] for row in mine], marker, color="0.5", ms=5, label=program)
     for order, color, marker in zip(ORDERS, ("C0", "C1", "C2", "C3"), "os^D"):
         for follow, style in (("yes", "-"), ("no", ":")):
             case = Case(*SCENE_KEY, order, BEST[0], BEST[1], follow)

@@ -3,11 +3,12 @@
 
   cost.py [--abut build/bin/abut] [--out out] [--full] [--only TEXT ...] [--compare FILE ...] [--repetitions 3] [--processes 2] [--tables]
 
-Leaves cost.csv, one line a mesh, cost.md, the tables, and pictures (.png and .svg): cost, cost_estimators, cost_split. Every line is a run of
-its own that ends with this mesh, start-up included, of which CPU and wall seconds are the median of all repetitions, with the least and the
-largest. Cases that cost.csv already has are not repeated: delete it after a change of the program. --only takes the cases whose names, as
-they are printed, have all the words of one TEXT; --compare puts the points of other programs on the pictures, in the format of
-examples/studies/compare; --tables runs nothing.
+Leaves cost.csv, one line a mesh, cost.md, the tables, and pictures (.png and .svg): cost, cost_estimators, cost_split. Every line is a run
+of its own that ends with this mesh, start-up included, of which CPU and wall seconds are the median of all repetitions, with the least and
+the largest. Cases that cost.csv already has are not repeated: delete it after a change of the program. --only takes the cases whose
+names, as they are printed, have all the words of one TEXT; --compare puts the points of other programs on the pictures, in the format of
+examples/studies/compare; --tables runs nothing, and
+takes the cost.csv of this folder if --out has none.
 """
 import argparse, collections, os, shutil, statistics, subprocess, sys, tempfile
 
@@ -15,7 +16,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, HERE)
 import scenes  # noqa: E402
 from layers import number, profile, record  # noqa: E402
-from study import TOP, Kept, cpu_of, ends, load, read, where  # noqa: E402
+from study import TOP, Kept, cpu_of, ends, load, points, read, where  # noqa: E402
 
 ESTIMATORS = {  # what refines: the series
     "uniform": "",
@@ -115,7 +116,8 @@ class Runs:
             for cycle, factor in enumerate(FACTORS, 1):
                 command = self.command(case, folder, factor)
                 cells = [text for word, text in zip(command, command[1:]) if word.endswith("_mesh_cells")]
-                if max(2 * (case.order * nx + 1) * (case.order * ny + 1) for nx, ny in (map(int, text.split(",")) for text in cells)) > case.most:
+                sizes = [[case.order * int(n) + 1 for n in text.split(",")] for text in cells]
+                if max(2 * nx * ny for nx, ny in sizes) > case.most:
                     return
                 yield cycle, command
             return
@@ -170,10 +172,12 @@ def main():
     import pages  # what needs Matplotlib
 
     os.makedirs(args.out, exist_ok=True)
-    cases, runs, peers = presets(args.full), Runs(args), pages.points(args.compare)
+    cases, runs, peers = presets(args.full), Runs(args), [one for path in args.compare for one in points(path)]
     if args.only:
-        cases = [case for case in cases if any(all(word in named(case).replace(",", "").split() for word in text.split()) for text in args.only)]
-    kept, seconds = Kept(os.path.join(args.out, "cost.csv"), COLUMNS, case_of), load()
+        wanted = [set(text.split()) for text in args.only]
+        cases = [case for case in cases if any(words <= set(named(case).replace(",", "").split()) for words in wanted)]
+    path = os.path.join(args.out, "cost.csv")
+    kept, seconds = Kept(path if os.path.exists(path) or not args.tables else os.path.join(HERE, "cost.csv"), COLUMNS, case_of), load()
     if not args.tables:
         if any(case.estimator == "random" for case in cases if case not in kept.rows):
             runs.plugin = build_random(args.out)

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Writes reference.json: what other independent values do not give, from meshes of order 4, graded to the end of the contact.
 
-Of two layers with a penalty the nodal pressures, whose force, largest value, edge and penalty energy (theta/2 times the integral of p^2) are
-compared with the independent values of examples/layers/reference.json; of the punch force, energy and pressures, whose error is the
+Of two layers with a penalty the nodal pressures, whose force, largest value, edge and penalty energy, theta/2 times the integral of p^2,
+are compared with the independent values of examples/layers/reference.json; of the punch force, energy and pressures, whose error is the
 difference from a mesh with cells half as large.
 
   reference.py [--abut build/bin/abut]
@@ -34,8 +34,8 @@ def layers(abut, c):
     one = scenes.layers.reference(c)
     distance = f"sqrt((x-{one['a']['value']!r})^2+(y-1)^2)"
     found, x, p = run(abut, Case("layers", 4, c), f"max(1e-4,0.25*{distance})")
-    off = {name: found[key] / one[name]["value"] - 1 for name, key in (("P", "pair.mid.force"), ("a", "pair.mid.contact_edge"), ("Jtheta", "energy.penalty"))}
-    off["p0"] = p[0] / one["p0"]["value"] - 1
+    values = {"P": found["pair.mid.force"], "a": found["pair.mid.contact_edge"], "Jtheta": found["energy.penalty"], "p0": p[0]}
+    off = {key: value / one[key]["value"] - 1 for key, value in values.items()}
     return {"x": x, "p": p, "off": {key: float(f"{value:.1e}") for key, value in off.items()}, "unknowns": int(found["unknowns"])}
 
 
@@ -44,10 +44,12 @@ def punch(abut):
     for h, slope, near in (1e-7, 0.3, 0.125), (1e-8, 0.15, 0.0625):  # cells of 0.125 and 0.0625 below x = 0
         size = f"max({h},min({slope}*(abs(x-1)+abs(y)),{near}+0.5*sqrt(x^2+y^2)))"
         found, x, p = run(abut, Case("punch", 4, 0.0), size)
-        runs.append({"P": found["pair.mid.force"], "energy": found["energy.strain"], "p0": p[0], "x": x, "p": p, "unknowns": int(found["unknowns"])})
+        values = {"P": found["pair.mid.force"], "energy": found["energy.strain"], "p0": p[0]}
+        runs.append({**values, "x": x, "p": p, "unknowns": int(found["unknowns"])})
     coarse, fine = runs
     off = {key: float(f"{coarse[key] / fine[key] - 1:.1e}") for key in ("P", "energy", "p0")}
-    off["p"] = float(f"{pressure_error(coarse['x'], coarse['p'], 4, scenes.piecewise(fine['x'], fine['p']), 1.0, scenes.Punch.end):.1e}")
+    error = pressure_error(coarse["x"], coarse["p"], 4, scenes.piecewise(fine["x"], fine["p"]), 1.0, scenes.Punch.end)
+    off["p"] = float(f"{error:.1e}")
     return {**fine, "x": coarse["x"], "p": coarse["p"], "off": off}  # of the pressures the mesh with fewer nodes
 
 

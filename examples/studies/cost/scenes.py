@@ -73,7 +73,8 @@ class Layers:
             found["pressure"] = piecewise(*(stored(f"layers, c = {c:g}")[key] for key in "xp"))
         else:
             with open(os.path.join(STUDIES, "accuracy", "reference.json")) as f:
-                found["pressure"] = chebyshev(next(case for case in json.load(f)["cases"] if (case["materials"], case["closure"]) == ("equal", 1.366)))
+                cases = json.load(f)["cases"]
+            found["pressure"] = chebyshev(next(case for case in cases if (case["materials"], case["closure"]) == ("equal", 1.366)))
         return found
 
 
@@ -162,8 +163,8 @@ SCENES = {"layers": Layers(), "hertz": Hertz(), "punch": Punch()}
 
 
 def errors(case, run, nodes, pressures):
-    """Relative errors of a record and the nodal pressures of its mesh; that of the energy is its root, for given displacements the error in the
-    energy norm"""
+    """Relative errors of a record and the nodal pressures of its mesh; of the energy it is the root, which for given displacements is the
+    error in the energy norm"""
     scene = SCENES[case.scene]
     one, exact, bounded = scene.reference(case.c), scene.reference(0.0), scene.end == math.inf
     values = {"P": run["pair.mid.force"], "p0": run["pair.mid.pressure_max"] if bounded else pressures[0], "a": run["pair.mid.contact_edge"]}
