@@ -2,6 +2,7 @@
 import math, os
 
 import matplotlib
+from PIL import Image
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
@@ -24,11 +25,13 @@ def legend_above(figure, axes, columns):
     figure.legend(handles.values(), handles, loc="upper center", ncol=columns)
 
 
-def save(figure, stem):
-    """stem.png and stem.svg; the same bytes for the same figure"""
+def save(figure, stem, colors=None):
+    """stem.png and stem.svg; the same bytes for the same figure. With a number of colours, for lines, the PNG is a third as large"""
     for kind in ("png", "svg"):
         aside = f"{stem}.part.{kind}"
         figure.savefig(aside, metadata={"Date": None} if kind == "svg" else None)
+        if colors and kind == "png":
+            Image.open(aside).convert("RGB").quantize(colors).save(aside, optimize=True)
         os.replace(aside, f"{stem}.{kind}")
     plt.close(figure)
     print(f"{stem}.png")

@@ -36,8 +36,8 @@ LOOPS = {
 ORDERS = (1, 2, 3)
 FACTORS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64)  # of the first mesh, uniform series
 ADAPTOR = "-adaptor_type doerfler -adaptor_bulk 0.5 -adaptor_target 1e-9 -adaptor_max_level 28"
-MOST = {"quick": {1: 8000, 2: 3000, 3: 3000}, "full": {1: 40000, 2: 12000, 3: 12000}}  # unknowns of one body, by order
-CAPS = {"ddneumann": 1500, "anderson": 1500}  # in the quick preset: these sweep much
+MOST = {"quick": {1: 8000, 2: 3000, 3: 3000}, "full": {1: 60000, 2: 60000, 3: 60000}}  # unknowns of one body, by order
+CAPS = {"ddneumann": 1500, "anderson": 1500, "uniform": 30000}  # in the quick preset: these sweep much, and uniform meshes need more
 Case = collections.namedtuple("Case", "scene order estimator c loop most")
 ERRORS = "err_energy err_p_L2 err_P err_p0 err_a total_P total_p0 penalty_P penalty_p0".split()
 COUNTS = "unknowns ndof1 ndof2 cells sweeps work ksp_its".split()
@@ -65,7 +65,7 @@ def presets(full):
     what += [(scene, 3, estimator, 0.0, "ddactive") for scene in scenes.SCENES for estimator in ("uniform", "zz", "residual")]
     what += [("layers", order, "residual", c, "ddactive") for c in scenes.PENALTIES if c for order in ORDERS]
     what += [("layers", 1, "residual", c, loop) for loop in LOOPS if loop != "ddactive" for c in scenes.PENALTIES if c]
-    return [Case(*one, CAPS.get(one[4], most[one[1]])) for one in what]
+    return [Case(*one, CAPS.get(one[2], CAPS.get(one[4], most[one[1]]))) for one in what]
 
 
 def reason(said):

@@ -186,7 +186,7 @@ def draw_orders(series, peers, folder):
     axes[0, 0].set_ylabel("relative error, energy norm")
     axes[1, 0].set_ylabel("relative error of the force P")
     legend_above(figure, axes[1, 2:], 4)
-    save(figure, os.path.join(folder, "cost"))
+    save(figure, os.path.join(folder, "cost"), 64)
 
 
 def draw_estimators(series, folder):
@@ -202,15 +202,17 @@ def draw_estimators(series, folder):
                     line(axis, rows, x, "err_energy", STYLE[case.estimator], case.estimator)
         pair[0].set(title=f"{scene}, order 2", xlabel=AXES["unknowns"])
         pair[1].set_xlabel(AXES["cpu_s"])
+        pair[1].set_xticks([0.1, 0.2, 0.5, 1, 2], ["0.1", "0.2", "0.5", "1", "2"])
+        pair[1].tick_params(axis="x", which="minor", labelbottom=False)
         for estimator, rate in ("residual", 1), ("uniform", LAW[scene][2]):
             rows = next((rows for case, rows in exact(series, scene, estimator).items() if case.order == 2 and solved(rows)), None)
             if rows:
-                x, y = float(solved(rows)[-1]["unknowns"]), float(solved(rows)[-1]["err_energy"])
+                x, y = (float(solved(rows)[-1][key]) for key in ("unknowns", "err_energy"))
                 slope(pair[0], -rate, (x / 5, x), (0.6 if rate == 1 else 1.5) * y * 5 ** (rate / 2), f"−{rate:g}")
     for axis in axes[:, 0]:
         axis.set_ylabel("relative error, energy norm")
     legend_above(figure, axes[0], 7)
-    save(figure, os.path.join(folder, "cost_estimators"))
+    save(figure, os.path.join(folder, "cost_estimators"), 64)
 
 
 def draw_split(series, folder):
@@ -243,4 +245,4 @@ def draw_split(series, folder):
         if axis.lines:
             axis.legend()
     axes[2].legend(fontsize=6)
-    save(figure, os.path.join(folder, "cost_split"))
+    save(figure, os.path.join(folder, "cost_split"), 64)

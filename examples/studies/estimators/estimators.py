@@ -241,7 +241,7 @@ def draw(kept, folder):
     axes[0, 0].set_ylabel("estimate / true error")
     axes[1, 0].set_ylabel("rank correlation")
     legend_above(figure, axes[0], 6)
-    save(figure, os.path.join(folder, "estimators"))
+    save(figure, os.path.join(folder, "estimators"), 64)
     meshes = read(os.path.join(folder, "estimators_meshes.csv"))
     figure, axes = plt.subplots(len(names), len(estimators), figsize=(2.1 * len(estimators), 2.3 * len(names)), squeeze=False)
     for scene, row in zip(names, axes):
@@ -254,7 +254,7 @@ def draw(kept, folder):
             axis.set(xlim=(0, 2), ylim=(middle - 1, middle + 1), aspect="equal", xticks=[], yticks=[])
             axis.set_title(f"{estimator}\n{mine[0]['unknowns']} unknowns" if mine else estimator, fontsize=7)
         row[0].set_ylabel(scene)
-    save(figure, os.path.join(folder, "estimators_meshes"))
+    save(figure, os.path.join(folder, "estimators_meshes"), 64)
 
 
 def main():

@@ -174,7 +174,7 @@ def draw(rows, cases, folder):
     for axis in axes[:, 0]:
         axis.set_ylabel("sweeps")
     legend_above(figure, axes[0], 4)
-    save(figure, os.path.join(folder, "loops"))
+    save(figure, os.path.join(folder, "loops"), 64)
 
 
 def main():
