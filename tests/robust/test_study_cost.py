@@ -6,7 +6,7 @@ from abut import PROGRAM, ROOT
 STUDIES = os.path.join(ROOT, "examples", "studies")
 COST = os.path.join(STUDIES, "cost")
 COUNTS = "cycle verdict unknowns ndof1 ndof2 cells sweeps work ksp_its".split()
-ERRORS = "err_p_L2 err_P err_p0 err_a total_P total_p0".split()  # of err_energy, a root, the energy is compared
+ERRORS = "err_p_L2 err_P err_p0 err_a total_P total_p0".split()
 VALUES = "P p0 a energy".split()
 
 
@@ -37,12 +37,14 @@ def recompute(text):
             assert [row[name] for name in COUNTS] == [old[name] for name in COUNTS], (row, old)
             assert all(abs(float(row[name]) / float(old[name]) - 1) < 1e-9 for name in VALUES), (row, old)
             assert all(abs(float(row[name]) - float(old[name])) < 1e-9 for name in ERRORS), (row, old)
+            assert abs(float(row["err_energy"]) ** 2 - float(old["err_energy"]) ** 2) < 2e-9, (row, old)  # the root of that of the energy
         with open(os.path.join(folder, "cost.md")) as f:
             assert f"1 series, {len(rows)} meshes" in f.read()
 
 
 def test_rows_are_recomputed_exactly():
     recompute("layers 2 uniform 0 ddactive")
+    recompute("punch 1 uniform")
 
 
 def test_an_adapted_series_is_recomputed_exactly():

@@ -108,7 +108,8 @@ def by_series(series):
                     row = met(rows, quantity, target)
                     cells.append(f"{float(row['cpu_s']):.2f}; {int(row['unknowns']):,}; {float(row['work']):,.0f}" if row else "-")
                 if last:
-                    ratio = f"{float(last['est_mesh']) / float(last['err_energy']):.2f}" if last["est_mesh"] else ""
+                    error = float(last["err_energy"])
+                    ratio = f"{float(last['est_mesh']) / error:.2f}" if last["est_mesh"] and error else ""
                     share = f"{100 * float(last['share_estimate'] or 0):.0f} %"
                     cells += [f"{float(last[quantity]):.1e}", f"{int(last['unknowns']):,}", share, ratio]
                 else:
