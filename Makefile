@@ -86,6 +86,18 @@ study-shares: all
 study-accuracy: all
 	@$(PYTHON) examples/studies/accuracy/accuracy.py --abut $(B)/bin/abut --out out
 
+# errors over unknowns, sweeps, CPU seconds and memory: see examples/studies/cost
+study-cost: all
+	@$(PYTHON) examples/studies/cost/cost.py --abut $(B)/bin/abut --out out
+# the points of other programs beside those, from CSV files: see examples/studies/compare
+COMPARE = examples/studies/accuracy/peers.csv
+study-compare: all
+	@$(PYTHON) examples/studies/cost/cost.py --abut $(B)/bin/abut --out out --tables $(COMPARE:%=--compare %)
+
+# estimates against true errors, for the estimators there are and those of PLUGIN="path/to/libestimator_mine.so": see examples/studies/estimators
+study-estimators: all
+	@$(PYTHON) examples/studies/estimators/estimators.py --abut $(B)/bin/abut --out out $(PLUGIN:%=--plugin %)
+
 # make test T=layers runs what has "layers" in its name
 test: all $(CHECKS)
 	@$(PYTHON) tests/run.py --build $(B) $(T)
@@ -145,5 +157,5 @@ VERSION = $(shell sed -n 's/^version: *//p' CITATION.cff)
 clean:
 	rm -rf $(B) out
 FORCE:
-.PHONY: all run study-loops study-shares study-accuracy test test-long suite fuzz check asan coverage memcheck setup deps deps-dev format lint install clean FORCE
+.PHONY: all run study-loops study-shares study-accuracy study-cost study-compare study-estimators test test-long suite fuzz check asan coverage memcheck setup deps deps-dev format lint install clean FORCE
 .DELETE_ON_ERROR:

@@ -28,6 +28,9 @@ def test_the_quick_table_keeps_what_the_default_loop_promises():
         with open(os.path.join(folder, "loops.md")) as f:
             page = f.read()
         assert page.count("| 0.0005 | ") == 2 and "*max iterations, 61*" in page and page.count(" refused |") == 2 * 5
+        with open(os.path.join(folder, "loops.svg")) as f:  # failures and all loops are in the picture
+            picture = f.read()
+        assert all(f"<!-- {loop} -->" in picture for loop in {row["loop"] for row in rows}) and os.path.getsize(os.path.join(folder, "loops.png")) > 3e3
         again = study(folder)  # nothing is run twice
         assert not again.returncode and "42 runs, 42 of them in" in again.stdout, again.stdout
         with open(os.path.join(folder, "loops.csv"), "a") as f:  # what is in the file counts

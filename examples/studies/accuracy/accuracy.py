@@ -9,7 +9,7 @@ mesh: its CPU seconds are those of the whole process, start-up included. Cases t
 after a change of the program. --tables runs nothing and makes tables of what is there.
 """
 
-import argparse, collections, csv, json, os, subprocess, sys, tempfile, threading, time
+import argparse, collections, csv, json, os, sys, tempfile, threading
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 TOP = os.path.dirname(os.path.dirname(os.path.dirname(HERE)))
@@ -17,7 +17,7 @@ SCENE = os.path.join(HERE, "layers_exact.yml")
 EXAMPLES = os.path.dirname(os.path.dirname(HERE))
 sys.path[:0] = [os.path.join(EXAMPLES, "layers"), EXAMPLES, os.path.dirname(HERE)]
 from layers import number, profile, record  # noqa: E402
-from study import append, side_by_side  # noqa: E402
+from study import append, chebyshev, cpu_of, ends, first_that, load, points, pressure_error, side_by_side  # noqa: E402
 
 ORDERS = (1, 2, 3, 4)
 ESTIMATORS = ("zz", "residual", "fembem")
@@ -82,49 +82,6 @@ def reference(case):
     raise SystemExit(f"reference.json has no {case.layers} with closure {case.closure}")
 
 
-def pressure_error(one, order, nodes, pressures):
-    """Of the nodal pressures, in the norm of L2 and relative; between the nodes polynomials of the order of the displacements"""
-    import numpy as np
-
-    nodes, pressures, (points, weights) = np.array(nodes), np.array(pressures), np.polynomial.legendre.leggauss(24)
-    error = norm = 0.0
-    for first in range(0, len(nodes) - 1, order):
-        x, p = nodes[first : first + order + 1], pressures[first : first + order + 1]
-        cuts = [x[0], one["a"], x[-1]] if x[0] < one["a"] < x[-1] else [x[0], x[-1]]
-        for low, high in zip(cuts, cuts[1:]):
-            s = (points + 1) / 2
-            at, w = (high - (high - low) * s**2, (high - low) * s * weights)  # crowded at the edge of the contact, where p is like a root
-            angle = np.arccos(np.minimum(at / one["a"], 1))
-            exact = sum(c * np.sin((2 * k + 1) * angle) for k, c in enumerate(one["chebyshev"]))
-            mine = sum(p[i] * np.prod([(at - x[j]) / (x[i] - x[j]) for j in range(order + 1) if j != i], axis=0) for i in range(order + 1))
-            error, norm = error + w @ (mine - exact) ** 2, norm + w @ exact**2
-    return float((error / norm) ** 0.5)
-
-
-def cpu_of(command):
-    """Exit status, last line of what it said, and CPU seconds of a command; without Open MPI's daemon, whose 0.07 s would be missing"""
-    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:  # also where MPI keeps its session
-        with open(os.path.join(folder, "said"), "w+") as said:
-            environment = {**os.environ, "TMPDIR": folder, "OMP_NUM_THREADS": "1", "OMPI_MCA_ess_singleton_isolated": "1"}
-            process = subprocess.Popen(command, stdout=said, stderr=said, env=environment)
-            _, status, used = os.wait4(process.pid, 0)
-            process.returncode = os.waitstatus_to_exitcode(status)
-            said.seek(0)
-            lines = said.read().split("\n")
-    return process.returncode, next((line for line in reversed(lines) if line.strip()), ""), used.ru_utime + used.ru_stime
-
-
-def load():
-    """CPU seconds of a fixed piece of work, by which those of other days and machines can be compared: the least of five"""
-    seconds = []
-    for _ in range(5):
-        start, total = time.process_time(), 0
-        for i in range(3_000_000):
-            total += i * i % 7
-        seconds.append(time.process_time() - start)
-    return min(seconds)
-
-
 class Study:
     def __init__(self, args):
         self.args, self.lock, self.cases = args, threading.Lock(), {}
@@ -144,7 +101,7 @@ class Study:
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "run.csv")
             command = [self.args.abut, SCENE, *options(case)]
-            status, said, cpu = cpu_of([*command, "-record_csv", path])
+            status, said, cpu = cpu_of([*command, "-record_csv", path])[:3]
             if status not in (0, 3) or not os.path.exists(path):  # 3: a limit was reached, which the verdict names
                 yield dict(case._asdict(), cycle=0, verdict=said, cpu=cpu)
                 return
@@ -152,17 +109,13 @@ class Study:
                 series = [{key: number(value) for key, value in row.items()} for row in csv.DictReader(f)]
             if "settled" in case.marking:  # the second solve of each mesh; the first only moves it
                 series = [row for row, after in zip(series, series[1:] + [{}]) if row["unknowns"] != after.get("unknowns")]
-            least = 4 * series[0]["error.discretisation"]
-            for row in series:
-                yield self.mesh(case, command, row, least, folder)
-                least = min(least, row["error.discretisation"])
+            for row, target in ends(series):
+                yield self.mesh(case, command, row, target, folder)
 
-    def mesh(self, case, command, row, least, folder):
-        """A run that ends with the mesh of this line: by a target between its estimate and the least of the meshes before, since with the
-        loop run to its end the estimate is a little different"""
+    def mesh(self, case, command, row, target, folder):
+        """A run that ends with the mesh of this line"""
         paths = [os.path.join(folder, name) for name in ("record", "profile.csv")]
-        target = (row["error.discretisation"] * least) ** 0.5
-        status, said, cpu = cpu_of([*command, "-adaptor_target", repr(target), "-record", paths[0], "-output_profile", paths[1]])
+        status, said, cpu = cpu_of([*command, "-adaptor_target", repr(target), "-record", paths[0], "-output_profile", paths[1]])[:3]
         line = dict(case._asdict(), cycle=int(row["cycles"]), cpu=f"{cpu:.3f}", unknowns=int(row["unknowns"]))
         run = record(paths[0]) if status in (0, 3) else {}
         if run.get("unknowns") != row["unknowns"]:
@@ -170,9 +123,9 @@ class Study:
         nodes, pressures = profile(paths[1])
         line.update(verdict=run["verdict"], cells=int(run["body.lower.cells"] + run["body.upper.cells"]), sweeps=int(run["sweeps"]))
         line.update(P=run["pair.mid.force"], p0=run["pair.mid.pressure_max"], p0_nodal=pressures[0], edge=run["pair.mid.contact_edge"])
-        line.update(
-            pressure_error=f"{pressure_error(reference(case), case.order, nodes, pressures):.3e}", estimate=run["error.discretisation"]
-        )
+        one = reference(case)
+        off = pressure_error(nodes, pressures, case.order, chebyshev(one), one["a"])
+        line.update(pressure_error=f"{off:.3e}", estimate=run["error.discretisation"])
         return line
 
     def keep(self, case, rows, done, total):
@@ -204,12 +157,7 @@ def solved(rows):
 
 def met(case, rows, target, p0="p0"):
     """The first mesh that meets a target which all later ones meet, too, and at least one later one does"""
-    found, rows = None, solved(rows)
-    for row in reversed(rows):
-        if any(error > most for error, most in zip(errors(case, row, p0), target)):
-            break
-        found = row
-    return found if found is not None and found is not rows[-1] else None
+    return first_that(solved(rows), lambda row: all(error <= most for error, most in zip(errors(case, row, p0), target)))
 
 
 def pair(target):
@@ -263,11 +211,7 @@ def least(study, cases):
     """Of every target and order the case with the least CPU, and what the peers took"""
     yield "\n| target | order | CPU [s] | meshes | sweeps | unknowns | by | NGSolve: CPU [s] |\n|---|---|---|---|---|---|---|---|"
     for target in TARGETS:
-        ngsolve = [
-            float(row["cum_cpu_s"])
-            for row in peers("ngsolve", "ZZ")
-            if float(row["err_P"]) <= target[0] and float(row["err_p0"]) <= target[1]
-        ]
+        ngsolve = [row["cpu_s"] for row in peers("ngsolve", "ZZ") if row["err_P"] <= target[0] and row["err_p0"] <= target[1]]
         for order in ORDERS:
             mine = [case for case in cases if case[:4] == (*SCENE_KEY, order)]
             found = [(float(row["cpu"]), row, case) for case in mine for row in [met(case, study.cases.get(case, []), target)] if row]
@@ -279,8 +223,7 @@ def least(study, cases):
 
 
 def peers(program, *variants):
-    with open(os.path.join(HERE, "peers.csv")) as f:
-        rows = list(csv.DictReader(line for line in f if not line.startswith("#")))
+    rows = points(os.path.join(HERE, "peers.csv"))
     return [row for row in rows if row["program"] == program and row["err_P"] and any(variant in row["variant"] for variant in variants)]
 
 
@@ -290,11 +233,9 @@ def draw(study, folder):
     figure, axes = plt.subplots(2, 2, figsize=(11, 7.5))
     for (program, variants), marker in zip(PEERS.items(), "x+1234"):
         mine = peers(program, *variants)
-        twice = 2 if program == "dealii" else 1  # one body
-        for axis, column in zip(axes.T, ("unknowns", "cum_cpu_s")):
+        for axis, column in zip(axes.T, ("unknowns", "cpu_s")):
             for one, error in zip(axis, ("err_P", "err_p0")):
-                x = [twice * float(row[column] or row["cpu_s"] if column == "cum_cpu_s" else row[column]) for row in mine]
-                one.loglog(x, [float(row[error]) for row in mine], marker, color="0.5", ms=5, label=program)
+                one.loglog([row[column] for row in mine], [row[error] for row in mine], marker, color="0.5", ms=5, label=program)
     for order, color, marker in zip(ORDERS, ("C0", "C1", "C2", "C3"), "os^D"):
         for follow, style in (("yes", "-"), ("no", ":")):
             case = Case(*SCENE_KEY, order, BEST[0], BEST[1], follow)

@@ -3,8 +3,8 @@
 
   loops.py [--abut build/bin/abut] [--out out] [--cap 300] [--processes 2] [--quick] [--layers equal]
 
-Leaves loops.csv, one line a run, and loops.md, the tables. Runs that loops.csv already has are not repeated: delete it after a
-change of the program.
+Leaves loops.csv, one line a run, loops.md, the tables, and loops.png and .svg. Runs that loops.csv already has are not repeated: delete it
+after a change of the program.
 The exit status is 1 if the default loop fails anywhere, or takes more sweeps than the page of this folder says.
 """
 import argparse, collections, csv, os, statistics, subprocess, sys, tempfile, threading, time
@@ -12,7 +12,7 @@ import argparse, collections, csv, os, statistics, subprocess, sys, tempfile, th
 HERE = os.path.dirname(os.path.abspath(__file__))
 EXAMPLES = os.path.dirname(os.path.dirname(HERE))
 LOOPS = os.path.join(os.path.dirname(EXAMPLES), "petscopts", "loop")
-sys.path[:0] = [os.path.join(EXAMPLES, "layers"), os.path.dirname(HERE)]
+sys.path[:0] = [os.path.join(EXAMPLES, "layers"), EXAMPLES, os.path.dirname(HERE)]
 from layers import record  # noqa: E402
 from study import append, side_by_side  # noqa: E402
 
@@ -148,6 +148,35 @@ def summary(rows, cases):
     return lines, wrong
 
 
+def draw(rows, cases, folder):
+    """Sweeps against c, a panel a mesh and pair of layers; c = 0 at the left. A loop that failed is a cross at what it swept in vain"""
+    from picture import legend_above, plt, save
+
+    names, meshes = (list(dict.fromkeys(getattr(case, key) for case in cases)) for key in ("layers", "mesh"))
+    size = 2.6 * len(meshes), 2.2 * len(names) + 0.4
+    figure, axes = plt.subplots(len(names), len(meshes), figsize=size, sharex=True, sharey=True, squeeze=False)
+    penalties = sorted({case.c for case in cases})
+    place = {c: c or penalties[1] / 10 for c in penalties}
+    for name, row in zip(names, axes):
+        for mesh, axis in zip(meshes, row):
+            for loop, color, marker in zip(TYPES, ("0.5", *(f"C{i}" for i in range(6))), "xsD^vo+"):
+                mine = [(place[case.c], rows[case]) for case in cases if (case.layers, case.mesh, case.loop) == (name, mesh, loop)]
+                good = sorted((c, int(row["sweeps"])) for c, row in mine if row["verdict"] == "converged")
+                bad = [(c, int(row["sweeps"])) for c, row in mine if row["verdict"] not in ("converged", "refused")]
+                line = "-" if loop == DEFAULT else "--"
+                axis.loglog(*(zip(*good) if good else ([], [])), color=color, marker=marker, ls=line, label=loop)
+                axis.loglog(*(zip(*bad) if bad else ([], [])), color=color, marker="x", ls="", ms=5)
+            axis.set_title(f"{name}, {mesh}")
+    for axis in axes[-1]:
+        axis.set(xlabel="c", xticks=list(place.values()), xticklabels=["0" if not c else f"{c:g}" for c in penalties])
+        axis.minorticks_off()
+        axis.tick_params(axis="x", labelrotation=45)
+    for axis in axes[:, 0]:
+        axis.set_ylabel("sweeps")
+    legend_above(figure, axes[0], 4)
+    save(figure, os.path.join(folder, "loops"), 64)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--abut", default=os.path.join(os.path.dirname(EXAMPLES), "build", "bin", "abut"))
@@ -167,6 +196,7 @@ def main():
     path = os.path.join(args.out, "loops.md")
     with open(path, "w") as f:
         print("\n".join(tables(study.rows, cases, args.cap)) + "\n\n" + "\n\n".join(lines), file=f)
+    draw(study.rows, cases, args.out)
     print("\n".join([path, *lines, *(f"NOT AS PROMISED: {line}" for line in wrong)]))
     sys.exit(bool(wrong))
 
