@@ -86,6 +86,10 @@ study-shares: all
 study-accuracy: all
 	@$(PYTHON) examples/studies/accuracy/accuracy.py --abut $(B)/bin/abut --out out
 
+# the paper's Figs 4 to 10, some 35 runs: see docs/paper.md
+study-paper: all
+	@$(PYTHON) examples/studies/paper/paper.py --abut $(B)/bin/abut --out out/paper
+
 # make test T=layers runs what has "layers" in its name
 test: all $(CHECKS)
 	@$(PYTHON) tests/run.py --build $(B) $(T)
@@ -127,5 +131,5 @@ VERSION = $(shell sed -n 's/^version: *//p' CITATION.cff)
 clean:
 	rm -rf $(B) out
 FORCE:
-.PHONY: all run study-loops study-shares study-accuracy test test-long suite fuzz check asan setup deps deps-dev format lint install clean FORCE
+.PHONY: all run study-loops study-shares study-accuracy study-paper test test-long suite fuzz check asan setup deps deps-dev format lint install clean FORCE
 .DELETE_ON_ERROR:

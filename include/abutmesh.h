@@ -35,7 +35,7 @@ PETSC_EXTERN const char *const AbutShapes[];
    Nodes are the points whose displacements make the function: the vertices, with their numbers, then points inside the sides of the cells
    and inside the cells; Gauss-Lobatto points on a side, and their products in a quad. The displacement of a hanging node, on half of a
    coarse side, is that of the coarse side there: a sum over its anchors. In a mesh without balance a coarse side may have divided halves:
-   these are sides too, that of no cell, and a node hangs on the side of a cell above them all. */
+   these are sides too, of no cell. */
 typedef struct {
   PetscInt         order; /* of the displacement */
   PetscInt         ncells, nvertices, nnodes;

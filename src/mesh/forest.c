@@ -266,9 +266,9 @@ PetscErrorCode AbutMeshSetBalance(AbutMesh mesh, PetscBool balance)
   AbutCheckInput(balance || mesh->shape == ABUT_QUAD, comm,
                  "%smesh_balance: triangles are always refined such that they fit; leave it out, or give %smesh_shape: quad", prefix,
                  prefix);
-  AbutCheckInput(balance || mesh->order == 1, comm, "%smesh_balance: no works with order 1 only; leave it out, or give %smesh_order: 1",
-                 prefix, prefix);
-  AbutCheckInput(balance || size == 1, comm, "%smesh_balance: no works on one rank only; leave it out, or run on one", prefix);
+  AbutCheckInput(balance || mesh->order == 1, comm, "%smesh_balance: no is for order 1 only; leave it out, or give %smesh_order: 1", prefix,
+                 prefix);
+  AbutCheckInput(balance || size == 1, comm, "%smesh_balance: no is for one rank only; leave it out, or run on one", prefix);
   mesh->balance = balance;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -45,14 +45,6 @@ static PetscReal AbutPlaceOnParent_Private(PetscInt half, PetscReal s)
   return 0.5 * (s + (half ? 1. : -1.));
 }
 
-/* The cell's side above a part of it, from part to part where these are a chain, and where on it a point of the part lies */
-static PetscReal AbutPlaceAbove_Private(const AbutMeshTopology *t, PetscInt e, PetscReal s, PetscInt *top)
-{
-  for (*top = e; t->edgeparent[2 * *top] >= 0; *top = t->edgeparent[2 * *top])
-    s = AbutPlaceOnParent_Private(t->edgeparent[2 * *top + 1], s);
-  return s;
-}
-
 /* The function of the coarse side gives a hanging node its value; in a mesh that is 2:1 across sides the coarse side itself never hangs */
 static PetscErrorCode AbutNodesHang_Private(AbutMeshTopology *t)
 {
@@ -65,14 +57,14 @@ static PetscErrorCode AbutNodesHang_Private(AbutMeshTopology *t)
   PetscCall(PetscMalloc2(t->nnodes, &above, t->nnodes, &place)); /* the side on which a node hangs, and where */
   for (PetscInt i = 0; i < t->nnodes; ++i) above[i] = -1;
   for (PetscInt e = 0; e < t->nedges; ++e) {
-    const PetscInt half = t->edgeparent[2 * e + 1];
-    PetscInt       side[ABUT_SIDE_NODES_MAX], top;
+    const PetscInt parent = t->edgeparent[2 * e], half = t->edgeparent[2 * e + 1];
+    PetscInt       side[ABUT_SIDE_NODES_MAX];
 
-    if (t->edgeparent[2 * e] < 0) continue;
+    if (parent < 0) continue;
     AbutMeshGetEdgeNodes_Private(t, e, t->edge[2 * e], side);
     for (PetscInt i = half ? 0 : 1; i <= (half ? p - 1 : p); ++i) { /* all but the end that the two sides share */
-      place[side[i]] = AbutPlaceAbove_Private(t, e, line[i], &top);
-      above[side[i]] = top;
+      above[side[i]] = parent;
+      place[side[i]] = AbutPlaceOnParent_Private(half, line[i]);
       ++n;
     }
   }
@@ -119,7 +111,7 @@ static PetscInt AbutNodeExpand_Private(const AbutMeshTopology *t, PetscInt i, Pe
   return n;
 }
 
-/* Without balance an end of the coarse side may itself hang on a still coarser cell's: anchors of anchors, until all have unknowns */
+/* Without balance an end of the coarse side may itself hang, on that of a still coarser cell: anchors of anchors, until all have unknowns */
 static PetscErrorCode AbutNodesResolve_Private(AbutMesh mesh)
 {
   AbutMeshTopology *t = &mesh->topology;
