@@ -111,7 +111,7 @@ static PetscInt AbutNodeExpand_Private(const AbutMeshTopology *t, PetscInt i, Pe
   return n;
 }
 
-/* Without balance an end of the coarse side may itself hang, on that of a still coarser cell: anchors of anchors, until all have unknowns */
+/* Without balance an end of the coarse side, or of a half of it, may itself hang: anchors of anchors, until all have unknowns */
 static PetscErrorCode AbutNodesResolve_Private(AbutMesh mesh)
 {
   AbutMeshTopology *t = &mesh->topology;
