@@ -98,6 +98,10 @@ study-compare: all
 study-estimators: all
 	@$(PYTHON) examples/studies/estimators/estimators.py --abut $(B)/bin/abut --out out $(PLUGIN:%=--plugin %)
 
+# the paper's Figs 4 to 10, some 35 runs: see docs/paper.md
+study-paper: all
+	@$(PYTHON) examples/studies/paper/paper.py --abut $(B)/bin/abut --out out/paper
+
 # make test T=layers runs what has "layers" in its name
 test: all $(CHECKS)
 	@$(PYTHON) tests/run.py --build $(B) $(T)
@@ -157,5 +161,5 @@ VERSION = $(shell sed -n 's/^version: *//p' CITATION.cff)
 clean:
 	rm -rf $(B) out
 FORCE:
-.PHONY: all run study-loops study-shares study-accuracy study-cost study-compare study-estimators test test-long suite fuzz check asan coverage memcheck setup deps deps-dev format lint install clean FORCE
+.PHONY: all run study-loops study-shares study-accuracy study-paper study-cost study-compare study-estimators test test-long suite fuzz check asan coverage memcheck setup deps deps-dev format lint install clean FORCE
 .DELETE_ON_ERROR:

@@ -27,12 +27,15 @@ PETSC_EXTERN const char *const AbutShapes[];
 #define ABUT_ORDER_MAX      4 /* on quads; 3 on triangles */
 #define ABUT_SIDE_NODES_MAX 5 /* of a cell's side, its ends included */
 #define ABUT_CELL_NODES_MAX 25
+#define ABUT_CELL_ANCHORS_MAX \
+  (ABUT_CELL_NODES_MAX + 2 * ABUT_SIDE_NODES_MAX) /* nodes with unknowns that a cell sees: two of its sides hang */
 
 /* Plain arrays of the local part of a mesh, valid until the mesh adapts or is destroyed.
    Vertices are counted 0..nvertices-1 in the order of the DMPLEX; lengths in the unit of the scene.
    Nodes are the points whose displacements make the function: the vertices, with their numbers, then points inside the sides of the cells
    and inside the cells; Gauss-Lobatto points on a side, and their products in a quad. The displacement of a hanging node, on half of a
-   coarse side, is that of the coarse side there: a sum over its anchors. */
+   coarse side, is that of the coarse side there: a sum over its anchors. In a mesh without balance a coarse side may have divided halves:
+   these are sides too, of no cell. */
 typedef struct {
   PetscInt         order; /* of the displacement */
   PetscInt         ncells, nvertices, nnodes;
@@ -107,6 +110,8 @@ PETSC_EXTERN PetscErrorCode AbutMeshSumAtEdges(AbutMesh, PetscInt, PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutMeshSumAtVertices(AbutMesh, PetscInt, PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutMeshGetOrder(AbutMesh, PetscInt *);
 PETSC_EXTERN PetscErrorCode AbutMeshSetOrder(AbutMesh, PetscInt);
+PETSC_EXTERN PetscErrorCode AbutMeshSetBalance(AbutMesh, PetscBool);
+PETSC_EXTERN PetscErrorCode AbutMeshGetBalance(AbutMesh, PetscBool *);
 PETSC_EXTERN PetscErrorCode AbutMeshGetCellArea(AbutMesh, PetscInt, PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutMeshInvertCell(AbutMesh, PetscInt, const PetscReal[2], PetscReal[2], PetscBool *);
 

@@ -31,5 +31,6 @@ PETSC_EXTERN PetscErrorCode AbutRecorderEndCycle(AbutRecorder);
 PETSC_EXTERN PetscErrorCode AbutRecorderWantsFields(AbutRecorder, PetscBool *);
 PETSC_EXTERN PetscErrorCode AbutRecorderWriteFields(AbutRecorder, PetscInt, PetscInt, AbutBody[], Vec[]);
 PETSC_EXTERN PetscErrorCode AbutRecorderWriteProfile(AbutRecorder, AbutInterface, PetscInt, AbutPair[]);
+PETSC_EXTERN PetscErrorCode AbutRecorderWriteCycleProfile(AbutRecorder, PetscInt, AbutInterface, PetscInt, AbutPair[]);
 PETSC_EXTERN PetscErrorCode AbutRecorderWrite(AbutRecorder);
 PETSC_EXTERN PetscErrorCode AbutRecorderArchive(AbutRecorder, AbutArchive);

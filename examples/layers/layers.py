@@ -17,11 +17,16 @@ def record(path):
         return {key: number(value) for key, _, value in (line.strip().partition(" ") for line in f) if key}
 
 
+def profile_rows(path, pair="mid"):
+    """The rows of one pair of a file written by -output_profile, by x"""
+    with open(path) as f:
+        return sorted((r for r in csv.DictReader(f) if r["pair"] == pair), key=lambda r: float(r["x"]))
+
+
 def profile(path, pair="mid"):
     """Nodes and nodal pressures of one pair from a file written by -output_profile: x, p"""
-    with open(path) as f:
-        nodes = [(float(r["x"]), float(r["pressure"])) for r in csv.DictReader(f) if r["pair"] == pair and r["side"] == "pressure"]
-    return [list(column) for column in zip(*sorted(nodes))]
+    nodes = [(float(r["x"]), float(r["pressure"])) for r in profile_rows(path, pair) if r["side"] == "pressure"]
+    return [list(column) for column in zip(*nodes)]
 
 
 def reference(c):

@@ -51,10 +51,17 @@ static PetscErrorCode AbutEstimatorEstimate_Residual(AbutEstimator est, AbutBody
   const AbutMeshTopology *t;
   ResidualRule            rule;
   PetscReal               norm, constant;
+  PetscBool               balance;
+  const char             *name;
 
   PetscFunctionBegin;
   PetscCall(AbutEstimatorGetData(est, &residual));
   PetscCall(AbutBodyGetMesh(body, &mesh));
+  PetscCall(AbutBodyGetName(body, &name));
+  PetscCall(AbutMeshGetBalance(mesh, &balance));
+  AbutCheckInput(balance, PetscObjectComm((PetscObject)est),
+                 "estimator_type: residual looks at two halves of a side, at most; leave out %s_mesh_balance, or give another estimator",
+                 name);
   PetscCall(AbutMeshGetTopology(mesh, &t));
   rule.n = t->order + 1;
   PetscCall(PetscDTGaussQuadrature(rule.n, 0., 1., rule.s, rule.w));

@@ -3,8 +3,6 @@
 /* Assembly of the element matrices. Hanging unknowns are replaced by their anchors in the index list, with weights in the element
    matrix. */
 
-#define ABUT_CELL_ANCHORS_MAX (ABUT_CELL_NODES_MAX + 2 * ABUT_SIDE_NODES_MAX) /* at most two sides of a cell hang */
-
 /* The nodes with unknowns that a cell sees, and the weights by which they make its own nodes: W[nodes x n] */
 static PetscInt AbutCellAnchors_Private(const AbutMeshTopology *t, PetscInt c, PetscInt node[], PetscReal W[], PetscBool *hanging)
 {

@@ -1,4 +1,4 @@
-#include <abut/private/meshimpl.h>
+#include "quadrants.h" /*I "abutmesh.h" I*/
 #include <p4est_bits.h>
 #include <p4est_extended.h>
 #include <p4est_plex.h>
@@ -8,11 +8,6 @@ typedef struct {
   p4est_connectivity_t *connectivity;
   p4est_t              *p4est;
 } AbutMesh_Forest;
-
-/* The arrays in which p4est_get_plex_data() describes a mesh as a DMPlex */
-typedef struct {
-  sc_array_t *points, *conesizes, *cones, *orientations, *coordinates, *children, *parents, *childids, *leaves, *remotes;
-} AbutPlexData;
 
 typedef enum {
   ABUT_MERGED_NOT,
@@ -194,8 +189,10 @@ static PetscErrorCode AbutForestToPlex_Private(AbutMesh mesh, p4est_t *p4est, DM
   PetscFunctionBegin;
   for (int i = 0; i < 10; ++i)
     *array[i] = sc_array_new(i == 4 ? 3 * sizeof(double) : (i == 9 ? 2 * sizeof(p4est_locidx_t) : sizeof(p4est_locidx_t)));
-  p4est_get_plex_data(p4est, P4EST_CONNECT_FULL, 0, &first, data.points, data.conesizes, data.cones, data.orientations, data.coordinates,
-                      data.children, data.parents, data.childids, data.leaves, data.remotes);
+  if (mesh->balance)
+    p4est_get_plex_data(p4est, P4EST_CONNECT_FULL, 0, &first, data.points, data.conesizes, data.cones, data.orientations, data.coordinates,
+                        data.children, data.parents, data.childids, data.leaves, data.remotes);
+  else PetscCall(AbutForestGetPlexData_Private(mesh, p4est, &data));
   PetscCall(DMCreate(PetscObjectComm((PetscObject)mesh), dm));
   PetscCall(DMSetType(*dm, DMPLEX));
   PetscCall(DMSetDimension(*dm, 2));
@@ -276,7 +273,7 @@ static PetscErrorCode AbutMeshRefine_Forest(AbutMesh mesh, const PetscBool marks
   }
   p4est_refine_ext(p4est, 0, -1, AbutForestIsMarked_Private, AbutForestBegin_Private, AbutForestReplace_Private);
   /* across sides only: the paper's extra rule */
-  p4est_balance_ext(p4est, P4EST_CONNECT_FACE, AbutForestBegin_Private, AbutForestReplace_Private);
+  if (mesh->balance) p4est_balance_ext(p4est, P4EST_CONNECT_FACE, AbutForestBegin_Private, AbutForestReplace_Private);
   p4est_partition(p4est, 0, NULL);
   PetscCall(AbutForestToPlex_Private(mesh, p4est, dm));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -311,5 +308,70 @@ PetscErrorCode AbutMeshCreate_Forest(AbutMesh mesh)
   mesh->ops->refine    = AbutMeshRefine_Forest;
   mesh->ops->getlevels = AbutMeshGetLevels_Forest;
   mesh->ops->destroy   = AbutMeshDestroy_Forest;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutMeshSetBalance - Whether quads with a common side differ by at most one level
+
+   Logically Collective
+
+   Input Parameters:
++  mesh    - the mesh, its box and order set
+-  balance - `PETSC_TRUE` (default), or `PETSC_FALSE` for a mesh without the paper's extra rule
+
+   Level: advanced
+
+   Notes:
+   Without balance only the marked cells are split. The sides of fine cells on one of a coarse cell are joined to it by a mortar condition
+   with multipliers on the fine sides. The trace of the coarse cell is one of those of the fine ones, so the condition makes them equal: all
+   nodes on the coarse side take the values of its function there.
+
+   For the study of what the rule is good for: one rank, quads, order 1. Criterion (27) may split cells without end then; the residual
+   estimator, and meshes that follow the edges of contacts, want balance.
+
+   Source: the paper, Figs. 5 and 6.
+
+.seealso: `AbutMeshAdapt()`, `AbutMeshGetBalance()`
+@*/
+PetscErrorCode AbutMeshSetBalance(AbutMesh mesh, PetscBool balance)
+{
+  const MPI_Comm comm   = PetscObjectComm((PetscObject)mesh);
+  const char    *prefix = ((PetscObject)mesh)->prefix ? ((PetscObject)mesh)->prefix : "";
+  PetscMPIInt    size;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(mesh, ABUTMESH_CLASSID, 1);
+  PetscCheck(!mesh->setupcalled, comm, PETSC_ERR_ORDER, "Call AbutMeshSetBalance() before AbutMeshSetUp()");
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  AbutCheckInput(balance || mesh->shape == ABUT_QUAD, comm,
+                 "%smesh_balance: triangles are always refined such that they fit; leave it out, or give %smesh_shape: quad", prefix,
+                 prefix);
+  AbutCheckInput(balance || mesh->order == 1, comm, "%smesh_balance: no is for order 1 only; leave it out, or give %smesh_order: 1", prefix,
+                 prefix);
+  AbutCheckInput(balance || size == 1, comm, "%smesh_balance: no is for one rank only; leave it out, or run on one", prefix);
+  mesh->balance = balance;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutMeshGetBalance - Whether quads with a common side differ by at most one level
+
+   Not Collective
+
+   Input Parameter:
+.  mesh - the mesh
+
+   Output Parameter:
+.  balance - `PETSC_TRUE` if they do
+
+   Level: advanced
+
+.seealso: `AbutMeshSetBalance()`
+@*/
+PetscErrorCode AbutMeshGetBalance(AbutMesh mesh, PetscBool *balance)
+{
+  PetscFunctionBegin;
+  *balance = mesh->balance;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -233,9 +233,9 @@ PetscErrorCode AbutMeshArchive(AbutMesh mesh, AbutArchive ar)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(mesh, ABUTMESH_CLASSID, 1);
   PetscCall(AbutArchiveReads(ar, &reads));
-  PetscCall(PetscSNPrintf(text, sizeof(text), "%ss of order %d, %d by %d from %.17g,%.17g to %.17g,%.17g", AbutShapes[mesh->shape],
+  PetscCall(PetscSNPrintf(text, sizeof(text), "%ss of order %d, %d by %d from %.17g,%.17g to %.17g,%.17g%s", AbutShapes[mesh->shape],
                           (int)mesh->order, (int)mesh->cells[0], (int)mesh->cells[1], (double)mesh->lower[0], (double)mesh->lower[1],
-                          (double)mesh->upper[0], (double)mesh->upper[1]));
+                          (double)mesh->upper[0], (double)mesh->upper[1], mesh->balance ? "" : ", without balance"));
   PetscCall(AbutArchiveFit(ar, "its mesh", text));
   PetscCall(AbutArchiveCount(ar, "splits", &steps));
   for (PetscInt i = 0; i < steps && same; ++i) {

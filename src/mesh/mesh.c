@@ -31,7 +31,8 @@ static PetscErrorCode AbutMeshInitializePackage_Private(void)
 .  -mesh_cells <nx,ny>         - cells of the first mesh along each direction (triangles: twice as many)
 .  -mesh_size <expression>     - largest side a cell may have, an expression in x and y: cells of the first mesh are split until they obey
 .  -mesh_shape <quad|triangle> - shape of the cells
--  -mesh_order <1>             - polynomial order of the displacement: 1 to 4 on quads, 1 to 3 on triangles
+.  -mesh_order <1>             - polynomial order of the displacement: 1 to 4 on quads, 1 to 3 on triangles
+-  -mesh_balance <yes>         - no: quads with a common side may differ by any number of levels, see `AbutMeshSetBalance()`
 
    Level: intermediate
 
@@ -46,7 +47,8 @@ PetscErrorCode AbutMeshCreate(MPI_Comm comm, AbutMesh *mesh)
   PetscAssertPointer(mesh, 2);
   PetscCall(AbutMeshInitializePackage_Private());
   PetscCall(PetscHeaderCreate(*mesh, ABUTMESH_CLASSID, "AbutMesh", "Mesh of a body", "Mesh", comm, AbutMeshDestroy, AbutMeshView));
-  (*mesh)->order = 1;
+  (*mesh)->order   = 1;
+  (*mesh)->balance = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -157,7 +159,7 @@ PetscErrorCode AbutMeshSetFromOptions(AbutMesh mesh)
   const char *prefix   = ((PetscObject)mesh)->prefix ? ((PetscObject)mesh)->prefix : "";
   PetscReal   box[4]   = {mesh->lower[0], mesh->lower[1], mesh->upper[0], mesh->upper[1]};
   PetscInt    cells[2] = {mesh->cells[0], mesh->cells[1]}, shape = mesh->shape, order = mesh->order;
-  PetscBool   hasbox, hascells, hasshape, hasorder, hassize;
+  PetscBool   hasbox, hascells, hasshape, hasorder, hassize, hasbalance, balance = mesh->balance;
   char        size[PETSC_MAX_PATH_LEN] = "", key[256];
 
   PetscFunctionBegin;
@@ -167,6 +169,7 @@ PetscErrorCode AbutMeshSetFromOptions(AbutMesh mesh)
   PetscCall(AbutOptionsInts(PetscOptionsObject, "-mesh_cells", "nx,ny", 2, cells, &hascells));
   PetscCall(AbutOptionsEnum(PetscOptionsObject, "-mesh_shape", "Shape of the cells", AbutShapeNames, &shape, &hasshape));
   PetscCall(AbutOptionsInt(PetscOptionsObject, "-mesh_order", "Order of the displacement", &order, &hasorder));
+  PetscCall(AbutOptionsBool(PetscOptionsObject, "-mesh_balance", "At most one level between neighbours", &balance, &hasbalance));
   PetscCall(AbutOptionsString(PetscOptionsObject, "-mesh_size", "Largest side of the cells", size, sizeof(size), &hassize));
   PetscOptionsEnd();
   PetscCall(PetscSNPrintf(key, sizeof(key), "%smesh_size", prefix));
@@ -177,6 +180,7 @@ PetscErrorCode AbutMeshSetFromOptions(AbutMesh mesh)
                  hasbox ? "the cells along each direction, for example 8,2" : "the corners x0,y0,x1,y1 of the box, for example 0,0,4,1");
   if (hasbox || hascells || hasshape) PetscCall(AbutMeshSetBox(mesh, box, box + 2, cells, (AbutShape)shape));
   if (hasorder || hasshape) PetscCall(AbutMeshSetOrder(mesh, order));
+  if (hasbalance) PetscCall(AbutMeshSetBalance(mesh, balance));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -215,6 +219,7 @@ PetscErrorCode AbutMeshSetUp(AbutMesh mesh)
   PetscCheck(mesh->boxset, PetscObjectComm((PetscObject)mesh), PETSC_ERR_ARG_WRONGSTATE,
              "Call AbutMeshSetBox() or AbutMeshSetFromOptions() first");
   PetscCall(AbutMeshSetOrder(mesh, mesh->order)); /* the shape may have come later */
+  PetscCall(AbutMeshSetBalance(mesh, mesh->balance));
   mesh->setupcalled = PETSC_TRUE;
   PetscCall((mesh->shape == ABUT_QUAD ? AbutMeshCreate_Forest : AbutMeshCreate_Triangles)(mesh));
   PetscUseTypeMethod(mesh, create, &dm);
@@ -236,8 +241,8 @@ PetscErrorCode AbutMeshSetUp(AbutMesh mesh)
    Level: intermediate
 
    Notes:
-   Quadrilaterals are split in four and kept 2:1 across sides, which is the paper's extra rule against spurious refinement;
-   triangles are split in four by bisections, and their neighbours bisected until the mesh conforms.
+   Quadrilaterals are split in four and kept 2:1 across sides, which is the paper's extra rule against spurious refinement
+   (`AbutMeshSetBalance()`); triangles are split in four by bisections, and their neighbours bisected until the mesh conforms.
    Every array got from the mesh before is no longer valid; without cells to split or to merge, and with the ties as they were, nothing
    happens.
 

@@ -45,7 +45,7 @@ static PetscReal AbutPlaceOnParent_Private(PetscInt half, PetscReal s)
   return 0.5 * (s + (half ? 1. : -1.));
 }
 
-/* The function of the coarse side gives a hanging node its value; the coarse side itself never hangs, since the mesh is 2:1 across sides */
+/* The function of the coarse side gives a hanging node its value; in a mesh that is 2:1 across sides the coarse side itself never hangs */
 static PetscErrorCode AbutNodesHang_Private(AbutMeshTopology *t)
 {
   const PetscInt p = t->order;
@@ -88,6 +88,59 @@ static PetscErrorCode AbutNodesHang_Private(AbutMeshTopology *t)
   t->anchor          = anchor;
   t->weight          = weight;
   PetscCall(PetscFree2(above, place));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The nodes with unknowns, and their weights, on which a node hangs, added to the n of a list; returns how many the list has, at most
+   ABUT_CELL_ANCHORS_MAX+1 */
+static PetscInt AbutNodeExpand_Private(const AbutMeshTopology *t, PetscInt i, PetscReal w, PetscInt n, PetscInt node[], PetscReal weight[])
+{
+  PetscInt at = 0;
+
+  if (t->anchors[i + 1] > t->anchors[i]) {
+    for (PetscInt k = t->anchors[i]; k < t->anchors[i + 1] && n <= ABUT_CELL_ANCHORS_MAX; ++k)
+      n = AbutNodeExpand_Private(t, t->anchor[k], w * t->weight[k], n, node, weight);
+    return n;
+  }
+  while (at < n && node[at] != i) ++at;
+  if (at == n) {
+    node[n]     = i;
+    weight[n++] = 0.;
+  }
+  weight[at] += w;
+  return n;
+}
+
+/* Without balance an end of the coarse side, or of a half of it, may itself hang: anchors of anchors, until all have unknowns */
+static PetscErrorCode AbutNodesResolve_Private(AbutMesh mesh)
+{
+  AbutMeshTopology *t = &mesh->topology;
+  PetscInt          list[ABUT_CELL_ANCHORS_MAX + 1], *anchors, *anchor, total = 0;
+  PetscReal         w[ABUT_CELL_ANCHORS_MAX + 1], *weight;
+
+  PetscFunctionBegin;
+  for (PetscInt c = 0; c < t->ncells; ++c) {
+    PetscInt n = 0;
+
+    for (PetscInt k = 0; k < t->nodes && n <= ABUT_CELL_ANCHORS_MAX; ++k)
+      n = AbutNodeExpand_Private(t, t->cellnode[t->nodes * c + k], 1., n, list, w);
+    AbutCheckInput(n <= ABUT_CELL_ANCHORS_MAX, PetscObjectComm((PetscObject)mesh),
+                   "%smesh_balance: a cell hangs on more than %d nodes; leave it out, or give a smaller adaptor_max_level",
+                   ((PetscObject)mesh)->prefix ? ((PetscObject)mesh)->prefix : "", ABUT_CELL_ANCHORS_MAX);
+  }
+  for (PetscInt i = 0; i < t->nnodes; ++i)
+    if (t->anchors[i + 1] > t->anchors[i]) total += AbutNodeExpand_Private(t, i, 1., 0, list, w);
+  PetscCall(PetscMalloc3(t->nnodes + 1, &anchors, total, &anchor, total, &weight));
+  total = 0;
+  for (PetscInt i = 0; i < t->nnodes; ++i) {
+    anchors[i] = total;
+    if (t->anchors[i + 1] > t->anchors[i]) total += AbutNodeExpand_Private(t, i, 1., 0, anchor + total, weight + total);
+  }
+  anchors[t->nnodes] = total;
+  PetscCall(PetscFree3(t->anchors, t->anchor, t->weight));
+  t->anchors = anchors;
+  t->anchor  = anchor;
+  t->weight  = weight;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -187,6 +240,7 @@ PetscErrorCode AbutMeshNodesBuild_Private(AbutMesh mesh)
   PetscFunctionBegin;
   PetscCall(AbutNodesOfCells_Private(mesh));
   PetscCall(AbutNodesHang_Private(t));
+  if (!mesh->balance) PetscCall(AbutNodesResolve_Private(mesh));
   s[0] = (AbutStratum){.n = t->nvertices, .first = 0, .each = 1};
   s[1] = (AbutStratum){.n = t->nedges, .first = t->nvertices, .each = t->order - 1};
   s[2] = (AbutStratum){.n = t->ncells, .first = t->nvertices + (t->order - 1) * t->nedges, .each = t->nodes - t->corners * t->order};

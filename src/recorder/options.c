@@ -54,7 +54,8 @@ static PetscErrorCode AbutRecorderSetOutput_Private(AbutRecorder rec, const char
 .  -record_csv FILE         - one line per cycle, one column per key
 .  -output FILE.xdmf        - fields of every cycle: FILE.h5 holds them, FILE.xdmf says so to ParaView
 .  -output FILE.vtu         - fields of every cycle: FILE_BODY_CYCLE.vtu, listed in FILE.pvd
--  -output_profile FILE.csv - traces and pressures along every pair on the last mesh
+.  -output_profile FILE.csv - traces and pressures along every pair on the last mesh
+-  -output_profile_cycles   - with it: after every cycle too, FILE_0000.csv and so on
 
    Level: beginner
 
@@ -73,6 +74,8 @@ PetscErrorCode AbutRecorderSetFromOptions(AbutRecorder rec)
   PetscCall(AbutRecorderReadPath_Private(PetscOptionsObject, "-record_csv", "File with one line per cycle", &rec->csv_file));
   PetscCall(AbutRecorderReadPath_Private(PetscOptionsObject, "-output", "Fields: FILE.xdmf (HDF5) or FILE.vtu", &rec->output_file));
   PetscCall(AbutRecorderReadPath_Private(PetscOptionsObject, "-output_profile", "Profiles of the pairs: FILE.csv", &rec->profile_file));
+  if (rec->profile_file)
+    PetscCall(AbutOptionsBool(PetscOptionsObject, "-output_profile_cycles", "Profiles of every cycle", &rec->profile_cycles, NULL));
   PetscOptionsEnd();
   if (rec->output_file) PetscCall(AbutRecorderSetOutput_Private(rec, rec->output_file));
   AbutCheckInput(!rec->profile_file || HasExtension(rec->profile_file, ".csv"), comm,

@@ -1,5 +1,6 @@
 #include <abut/private/recorderimpl.h> /*I "abutrecorder.h" I*/
 #include <math.h>
+#include <string.h>
 
 /* What the profile of one pair is made of, known on all ranks */
 typedef struct {
@@ -83,6 +84,20 @@ static PetscErrorCode AbutRecorderCollectPair_Private(AbutInterface iface, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode AbutRecorderWriteProfileTo_Private(AbutRecorder rec, const char path[], AbutInterface iface, PetscInt npairs,
+                                                         AbutPair pairs[])
+{
+  Profile p = {npairs, NULL};
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(npairs, &p.pair));
+  for (PetscInt i = 0; i < npairs; ++i) PetscCall(AbutRecorderCollectPair_Private(iface, i, pairs[i], &p.pair[i]));
+  PetscCall(AbutFileWrite(PetscObjectComm((PetscObject)rec), path, WriteProfile, &p));
+  for (PetscInt i = 0; i < npairs; ++i) PetscCall(PetscFree(p.pair[i].gap));
+  PetscCall(PetscFree(p.pair));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
    AbutRecorderWriteProfile - Writes the traces and pressures along every pair on the present mesh
 
@@ -106,19 +121,46 @@ static PetscErrorCode AbutRecorderCollectPair_Private(AbutInterface iface, Petsc
    pressure, whose polynomials have the largest value of the record from order 2 on, is `AbutPairRecoverPressure()`. The other cells are
    empty.
 
-.seealso: `AbutInterfaceGetTrace()`, `AbutInterfaceGetPressure()`, `AbutPairGetPressureNodes()`, `AbutRecorderSetFromOptions()`
+.seealso: `AbutRecorderWriteCycleProfile()`, `AbutInterfaceGetTrace()`, `AbutInterfaceGetPressure()`, `AbutPairGetPressureNodes()`,
+          `AbutRecorderSetFromOptions()`
 @*/
 PetscErrorCode AbutRecorderWriteProfile(AbutRecorder rec, AbutInterface iface, PetscInt npairs, AbutPair pairs[])
 {
-  Profile p = {npairs, NULL};
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(rec, ABUTRECORDER_CLASSID, 1);
+  if (rec->profile_file) PetscCall(AbutRecorderWriteProfileTo_Private(rec, rec->profile_file, iface, npairs, pairs));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutRecorderWriteCycleProfile - Writes the traces and pressures along every pair after a cycle, if those of every cycle are asked for
+
+   Collective
+
+   Input Parameters:
++  rec     - the recorder
+.  cycle   - number of the cycle, 0 for the first
+.  iface   - the interface after a sweep
+.  npairs  - how many pairs
+-  pairs   - [npairs] the pairs, as given to `AbutInterfaceCreate()`
+
+   Options Database Key:
+.  -output_profile_cycles - with `-output_profile FILE.csv`: FILE_0000.csv and so on
+
+   Level: intermediate
+
+.seealso: `AbutRecorderWriteProfile()`, `AbutRecorderSetFromOptions()`
+@*/
+PetscErrorCode AbutRecorderWriteCycleProfile(AbutRecorder rec, PetscInt cycle, AbutInterface iface, PetscInt npairs, AbutPair pairs[])
+{
+  char   path[PETSC_MAX_PATH_LEN];
+  size_t stem;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(rec, ABUTRECORDER_CLASSID, 1);
-  if (!rec->profile_file) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(npairs, &p.pair));
-  for (PetscInt i = 0; i < npairs; ++i) PetscCall(AbutRecorderCollectPair_Private(iface, i, pairs[i], &p.pair[i]));
-  PetscCall(AbutFileWrite(PetscObjectComm((PetscObject)rec), rec->profile_file, WriteProfile, &p));
-  for (PetscInt i = 0; i < npairs; ++i) PetscCall(PetscFree(p.pair[i].gap));
-  PetscCall(PetscFree(p.pair));
+  if (!rec->profile_cycles) PetscFunctionReturn(PETSC_SUCCESS);
+  stem = strlen(rec->profile_file) - strlen(".csv");
+  PetscCall(PetscSNPrintf(path, sizeof(path), "%.*s_%04" PetscInt_FMT ".csv", (int)stem, rec->profile_file, cycle));
+  PetscCall(AbutRecorderWriteProfileTo_Private(rec, path, iface, npairs, pairs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -142,6 +142,26 @@ static PetscErrorCode AbutSceneCheckPeak_Private(AbutScene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A vertex that moves takes the hanging ones on its sides along, which knows no chains of them */
+static PetscErrorCode AbutSceneCheckFollow_Private(AbutScene scene)
+{
+  PetscBool follows, balance;
+
+  PetscFunctionBegin;
+  PetscCall(AbutAdaptorFollows(scene->adaptor, 1, &follows)); /* meshes without balance are of order 1 */
+  for (PetscInt b = 0; b < scene->nbodies && follows; ++b) {
+    AbutMesh    mesh;
+    const char *name;
+
+    PetscCall(AbutBodyGetName(scene->body[b], &name));
+    PetscCall(AbutBodyGetMesh(scene->body[b], &mesh));
+    PetscCall(AbutMeshGetBalance(mesh, &balance));
+    AbutCheckInput(balance, PetscObjectComm((PetscObject)scene),
+                   "adaptor_follow: a mesh without balance cannot move; leave it out, or %s_mesh_balance", name);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Keys of the adaptor that speak of contacts */
 static PetscErrorCode AbutSceneCheckContactKeys_Private(AbutScene scene)
 {
@@ -157,6 +177,7 @@ static PetscErrorCode AbutSceneCheckContactKeys_Private(AbutScene scene)
   if (!scene->snes || !scene->adaptor) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(AbutAdaptorSettles(scene->adaptor, &settles));
   PetscCall(AbutSceneFollows_Private(scene, &follows));
+  PetscCall(AbutSceneCheckFollow_Private(scene));
   AbutCheckInput(!settles || follows, PetscObjectComm((PetscObject)scene),
                  "adaptor_settle: no mesh follows the edges of contacts; give adaptor_follow: true, or leave it out");
   PetscCall(AbutSceneCheckPeak_Private(scene));

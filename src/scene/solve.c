@@ -184,6 +184,7 @@ static PetscErrorCode AbutSceneOutput_Private(AbutScene scene)
 
   PetscFunctionBegin;
   PetscCall(AbutRecorderEndCycle(scene->recorder));
+  if (scene->snes) PetscCall(AbutRecorderWriteCycleProfile(scene->recorder, scene->cycle, scene->iface, scene->npairs, scene->pair));
   PetscCall(AbutRecorderWantsFields(scene->recorder, &wants));
   if (wants) PetscCall(AbutRecorderWriteFields(scene->recorder, scene->cycle, scene->nbodies, scene->body, scene->eta));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,4 +1,4 @@
-"""The scripts of examples/layers read what a run writes: table, picture, sweep. The scene is made coarse, its numbers are looked at elsewhere."""
+"""The scripts of examples/layers read what a run writes: table, picture. The scene is made coarse, its numbers are looked at elsewhere."""
 import os, subprocess, sys, tempfile, unittest
 
 from abut import LAYERS, PROGRAM, ROOT, run
@@ -43,10 +43,3 @@ def test_picture():
         run_to(folder)
         script("plot.py", folder)
         assert os.path.getsize(os.path.join(folder, "layers.png")) > 20000 and os.path.exists(os.path.join(folder, "layers.svg"))
-
-
-def test_sweep():
-    with tempfile.TemporaryDirectory() as folder:
-        lines = script("sweep.py", "--abut", PROGRAM, "--out", folder, "--deltas", "0.4,0.2", *SMALL).splitlines()
-        unknowns = [int(line.split()[4]) for line in lines[1:3]]
-        assert unknowns[0] < unknowns[1] and os.path.exists(os.path.join(folder, "sweep.png")), lines

@@ -38,7 +38,8 @@ struct _p_AbutMesh {
   AbutShape        shape;
   PetscInt         order;
   PetscBool        boxset, setupcalled;
-  AbutExpression   size; /* wanted length of the cells of the first mesh, NULL: as they are */
+  PetscBool        balance; /* at most one level between quads with a common side */
+  AbutExpression   size;    /* wanted length of the cells of the first mesh, NULL: as they are */
   DM               dm;
   PetscInt         generation; /* counts the meshes: 0 is the first */
   AbutBasis        basis;

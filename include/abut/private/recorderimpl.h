@@ -43,8 +43,9 @@ struct _AbutRecorderOps {
 
 struct _p_AbutRecorder {
   PETSCHEADER(struct _AbutRecorderOps);
-  char *record_file, *csv_file, *output_file, *profile_file; /* NULL: not asked for */
-  char *output;                                              /* output_file without its extension */
+  char     *record_file, *csv_file, *output_file, *profile_file; /* NULL: not asked for */
+  char     *output;                                              /* output_file without its extension */
+  PetscBool profile_cycles;                                      /* a profile of every cycle too */
 
   PetscInt nkeys, maxkeys;
   char   **key, **value; /* [nkeys] in order of first appearance */
