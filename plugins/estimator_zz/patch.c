@@ -49,7 +49,7 @@ void AbutPatchAdd_Private(const AbutPatchSpace *space, const PetscReal d[2], con
 
 /* The factor of the normal equations; a stress that the samples do not tell apart from those before it is left out. The test is relative
    to the stress itself, so that neither it nor round-off depend on the unit of length. Of degree 5 the last one keeps 9e-5 of itself where
-   two of four cells are half as large; what cannot be told leaves 1e-14. */
+   two of four cells are half as large, 4e-8 in cells a thousand times as long as wide; what cannot be told leaves 1e-14. */
 static void AbutPatchFactor_Private(PetscInt n, const PetscReal m[], PetscReal L[][ABUT_PATCH_COEFS_MAX], PetscBool out[])
 {
   for (PetscInt i = 0; i < n; ++i) { /* Cholesky */

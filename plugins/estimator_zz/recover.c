@@ -54,6 +54,7 @@ static PetscErrorCode AbutPatchesSpread_Private(AbutMesh mesh, const AbutMeshTop
   PetscReal     *sum, moved[ABUT_PATCH_COEFS_MAX];
 
   PetscFunctionBegin;
+  PetscCheck(t->order == 1, PETSC_COMM_SELF, PETSC_ERR_PLIB, "Only stresses of degree 1 are handed on");
   PetscCall(PetscCalloc1(bs * t->nvertices, &sum));
   for (PetscInt k = 0; k < t->ncells * t->corners * t->corners; ++k) { /* all pairs of corners of all cells */
     const PetscInt *cell = t->cell + k / (t->corners * t->corners) * t->corners;

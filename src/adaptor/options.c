@@ -1,4 +1,5 @@
 #include <abut/private/adaptorimpl.h> /*I "abutadaptor.h" I*/
+#include <abut/private/sysimpl.h>
 
 /* What the user says of an adaptation */
 
@@ -77,7 +78,9 @@ static PetscErrorCode AbutAdaptorSetBodies_Private(AbutAdaptor adaptor, char lis
    of the target, may go back by one level a cycle (`AbutMeshSetCoarsening()`); those at the edges of contacts stay. It takes away what a
    jump left in the wrong place: on two layers of order 2 that begin with 3 by 1 cells and jump 8 levels, P = 0.1 saves 15 per cent of
    the unknowns of quads and 25 of triangles, with the same error of the force on as many meshes. Where the first mesh finds the edge it
-   gains nothing: on the same layers from 8 by 2 cells, to 0.002, 0.1 merges no cell and 0.4 takes 15 meshes instead of 9.
+   gains nothing: on the same layers from 8 by 2 cells, to 0.002, 0.1 merges no cell and 0.4 takes 15 meshes instead of 9. Cells merge
+   only in a cycle that refines others: a run that ends at `-adaptor_max_unknowns` makes no room for itself. Triangles of a grid whose
+   cells are more than 1.7 times as long as wide may stay, all of them, without a word.
 
    The energy has nearly nothing of an error of the pressure far from the edges, so meshes that are made for the energy leave the cells
    below the largest pressure as they were. With `-adaptor_peak` the cells of both bodies that touch it are refined whatever their
@@ -125,6 +128,7 @@ PetscErrorCode AbutAdaptorSetFromOptions(AbutAdaptor adaptor)
                             &adaptor->coarsen, NULL));
   AbutCheckInput(adaptor->coarsen >= 0. && adaptor->coarsen <= 0.5, comm,
                  "adaptor_coarsen: %g; give a part of the bound for refinement from 0 to 0.5, for example 0.05", (double)adaptor->coarsen);
+  PetscCall(AbutSourceUnless_Private("adaptor_follow", "from order 2 on"));
   PetscCall(AbutOptionsBool(PetscOptionsObject, "-adaptor_follow", "meshes move with the edges of the contacts", &adaptor->follow, &set));
   if (set) adaptor->followset = PETSC_TRUE;
   PetscCall(AbutOptionsBool(PetscOptionsObject, "-adaptor_settle", "a new mesh that follows moves again after its first solve",

@@ -10,8 +10,11 @@ Exit status: 0 converged and consistent, 1 bad input or a file that cannot be wr
 static PetscErrorCode AbutList(void)
 {
   const PetscViewer viewer = PETSC_VIEWER_STDOUT_WORLD;
+  PetscBool         scene;
 
   PetscFunctionBegin;
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-scene_bodies", &scene));
+  AbutCheckInput(!scene, PETSC_COMM_WORLD, "list: says what any scene may choose from; give it without a scene");
   PetscCall(AbutPluginAppendFromOptions(PETSC_COMM_WORLD));
   PetscCall(PetscViewerASCIIPrintf(viewer, "estimators, -estimator_type; several separated by commas\n"));
   PetscCall(AbutEstimatorViewTypes(PETSC_COMM_WORLD, viewer));
@@ -19,10 +22,11 @@ static PetscErrorCode AbutList(void)
   PetscCall(AbutLoopViewTypes(viewer));
   PetscCall(PetscViewerASCIIPrintf(viewer, "adaptors, -adaptor_type\n"));
   PetscCall(AbutAdaptorViewTypes(PETSC_COMM_WORLD, viewer));
+  PetscCall(AbutOptionsCheckAllRead(PETSC_COMM_WORLD, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the scene would make, and where each of its keys is from */
+/* What the scene makes, and where each of its keys is from */
 static PetscErrorCode AbutExplain(AbutScene scene)
 {
   PetscFunctionBegin;
@@ -32,28 +36,35 @@ static PetscErrorCode AbutExplain(AbutScene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode AbutSolve(AbutScene scene, PetscInt *status)
+{
+  PetscFunctionBegin;
+  PetscCall(AbutSceneSetUp(scene));
+  PetscCall(AbutSceneSolve(scene));
+  PetscCall(AbutSceneGetExitStatus(scene, status));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode AbutRun(PetscInt *status)
 {
   AbutScene scene;
-  PetscBool help, list, explain;
+  PetscBool help, list = PETSC_FALSE, explain = PETSC_FALSE;
 
   PetscFunctionBegin;
   *status = 0;
-  PetscCall(PetscOptionsHasName(NULL, NULL, "-list", &list));
+  PetscOptionsBegin(PETSC_COMM_WORLD, NULL, "What is asked for", NULL);
+  PetscCall(AbutOptionsBool(PetscOptionsObject, "-list", "the types there are", &list, NULL));
+  PetscCall(AbutOptionsBool(PetscOptionsObject, "-explain", "what the scene makes", &explain, NULL));
+  PetscOptionsEnd();
   if (list) {
     PetscCall(AbutList());
-    PetscCall(AbutOptionsCheckAllRead(PETSC_COMM_WORLD, PETSC_TRUE));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(PetscOptionsHasName(NULL, NULL, "-explain", &explain));
   PetscCall(AbutSceneCreate(PETSC_COMM_WORLD, &scene));
   PetscCall(AbutSceneSetFromOptions(scene));
-  PetscCall(PetscOptionsHasName(NULL, NULL, "-help", &help));
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-help", &help)); /* it has listed the keys of what the scene names: all it asks for */
   if (!help && explain) PetscCall(AbutExplain(scene));
-  else if (!help) { /* -help has listed the keys of what the scene names, and that was all it asked for */ PetscCall(AbutSceneSetUp(scene));
-    PetscCall(AbutSceneSolve(scene));
-    PetscCall(AbutSceneGetExitStatus(scene, status));
-  }
+  if (!help && !explain) PetscCall(AbutSolve(scene, status));
   PetscCall(AbutSceneDestroy(&scene));
   if (!help && !explain) PetscCall(AbutOptionsCheckAllRead(PETSC_COMM_WORLD, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);

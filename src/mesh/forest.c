@@ -253,8 +253,9 @@ static PetscErrorCode AbutMeshKeepFirst_Forest(AbutMesh mesh)
 
 static PetscErrorCode AbutMeshRefine_Forest(AbutMesh mesh, const PetscBool marks[], DM *dm)
 {
-  p4est_t *p4est = ((AbutMesh_Forest *)mesh->data)->p4est;
-  PetscInt c     = 0;
+  p4est_t       *p4est  = ((AbutMesh_Forest *)mesh->data)->p4est;
+  p4est_gloidx_t before = p4est->global_num_quadrants, merged;
+  PetscInt       c      = 0;
 
   PetscFunctionBegin;
   for (p4est_topidx_t t = p4est->first_local_tree; t <= p4est->last_local_tree; ++t) {
@@ -271,11 +272,12 @@ static PetscErrorCode AbutMeshRefine_Forest(AbutMesh mesh, const PetscBool marks
     p4est_partition(p4est, 1, NULL);
     p4est_coarsen_ext(p4est, 0, 0, AbutForestMayMerge_Private, AbutForestBegin_Private, AbutForestReplace_Private);
   }
+  merged = p4est->global_num_quadrants;
   p4est_refine_ext(p4est, 0, -1, AbutForestIsMarked_Private, AbutForestBegin_Private, AbutForestReplace_Private);
   /* across sides only: the paper's extra rule */
   if (mesh->balance) p4est_balance_ext(p4est, P4EST_CONNECT_FACE, AbutForestBegin_Private, AbutForestReplace_Private);
   p4est_partition(p4est, 0, NULL);
-  PetscCall(AbutForestToPlex_Private(mesh, p4est, dm));
+  if (merged != before || p4est->global_num_quadrants != merged) PetscCall(AbutForestToPlex_Private(mesh, p4est, dm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

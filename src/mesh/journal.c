@@ -173,7 +173,8 @@ static PetscBool AbutJournalHasTie_Private(AbutMesh mesh, const PetscReal value[
 {
   const PetscInt d = !(value[0] >= 2.);
 
-  return (PetscBool)(value[0] >= 0. && value[0] < ABUT_BOX_SIDES && value[1] > mesh->lower[d] && value[1] < mesh->upper[d]);
+  return (PetscBool)(value[0] >= 0. && value[0] < ABUT_BOX_SIDES && value[1] > mesh->lower[d] && value[1] < mesh->upper[d] &&
+                     value[2] > mesh->lower[d] && value[2] < mesh->upper[d]);
 }
 
 /* Does again what the journal says */
@@ -249,7 +250,8 @@ PetscErrorCode AbutMeshArchive(AbutMesh mesh, AbutArchive ar)
     }
     PetscCall(AbutArchiveInts(ar, "split", 2, title));
     PetscCall(AbutMeshGetCellCount(mesh, &cells));
-    same = (PetscBool)(!reads || (title[1] >= 0 && title[1] <= 4 * cells)); /* marks of cells, or ties of their corners */
+    /* marks of cells, or ties of their corners */
+    same = (PetscBool)(!reads || (title[0] >= ABUT_STEP_TIES && title[0] <= ABUT_STEP_MERGE && title[1] >= 0 && title[1] <= 4 * cells));
     if (!same) break;
     if (reads) PetscCall(PetscMalloc1(3 * title[1], &value));
     PetscCall(AbutArchiveReals(ar, "split cells", (title[0] == ABUT_STEP_TIES ? 3 : 2) * title[1],

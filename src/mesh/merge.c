@@ -201,9 +201,9 @@ PetscErrorCode AbutTrianglesMerge_Private(AbutMesh mesh, const PetscBool marks[]
     PetscCall(PetscObjectReference((PetscObject)coarse));
     while (again) PetscCall(AbutVerticesBisect_Private(mesh, n, all, &coarse, &again));
     PetscCall(AbutVerticesMissing_Private(mesh, coarse, n, all, &left, &whole));
-    if (whole) {
+    if (whole && left) {
       PetscCall(AbutVerticesForbid_Private(mesh, left, all));
-      PetscCall(DMDestroy(dm));
+      if (*dm != mesh->dm) PetscCall(DMDestroy(dm));
       *dm = coarse;
     } else PetscCall(DMDestroy(&coarse));
   }

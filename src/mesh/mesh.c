@@ -189,7 +189,6 @@ static PetscErrorCode AbutMeshSetDM_Private(AbutMesh mesh, DM dm)
 {
   PetscFunctionBegin;
   PetscCall(AbutMeshTopologyReset_Private(mesh));
-  PetscCall(PetscFree(mesh->coarsen));
   PetscCall(DMDestroy(&mesh->dm));
   mesh->dm = dm;
   PetscCall(AbutMeshTopologyBuild_Private(mesh));
@@ -261,13 +260,14 @@ PetscErrorCode AbutMeshAdapt(AbutMesh mesh, const PetscBool marks[])
   if (!splits && !mesh->tiesmoved) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscLogEventBegin(ABUTMESH_Adapt, mesh, 0, 0, 0));
   PetscCall(AbutJournalAdapt_Private(mesh, splits, marks));
+  dm = mesh->dm;
   if (splits) PetscUseTypeMethod(mesh, refine, marks, &dm);
-  else {
-    dm = mesh->dm;
-    PetscCall(PetscObjectReference((PetscObject)dm));
-  }
-  ++mesh->generation;
-  PetscCall(AbutMeshSetDM_Private(mesh, dm));
+  if (dm == mesh->dm) PetscCall(PetscObjectReference((PetscObject)dm));
+  if (dm != mesh->dm || mesh->tiesmoved) {
+    ++mesh->generation;
+    PetscCall(AbutMeshSetDM_Private(mesh, dm));
+  } else PetscCall(DMDestroy(&dm)); /* no four marked cells were one */
+  PetscCall(PetscFree(mesh->coarsen));
   PetscCall(PetscLogEventEnd(ABUTMESH_Adapt, mesh, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

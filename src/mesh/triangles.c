@@ -159,13 +159,9 @@ static PetscErrorCode AbutMeshRefine_Triangles(AbutMesh mesh, const PetscBool ma
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPIU_BOOL, MPI_LOR, PetscObjectComm((PetscObject)mesh)));
   if (any) PetscCall(AbutTrianglesSplit_Private(mesh->dm, active, dm));
-  else {
-    *dm = mesh->dm;
-    PetscCall(PetscObjectReference((PetscObject)*dm));
-  }
   PetscCall(DMLabelDestroy(&active));
   if (mesh->coarsen) PetscCall(AbutTrianglesMerge_Private(mesh, marks, dm));
-  PetscCall(AbutTrianglesDistribute_Private(mesh, dm));
+  if (*dm != mesh->dm) PetscCall(AbutTrianglesDistribute_Private(mesh, dm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

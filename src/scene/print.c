@@ -3,20 +3,21 @@
 /* Progress for people: one line a cycle, a summary at the end */
 
 /* A gap that is drawn wrong looks like a heavy load */
-static PetscErrorCode AbutSceneWarnOfOverlap_Private(AbutScene scene, AbutPair pair)
+PetscErrorCode AbutSceneWarnOfOverlap_Private(AbutScene scene)
 {
-  PetscReal   depth, x[2];
-  const char *name;
-
   PetscFunctionBegin;
-  PetscCall(AbutPairGetOverlap(pair, &depth, x));
-  if (depth == 0.) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(AbutPairGetName(pair, &name));
-  PetscCall(PetscPrintf(PetscObjectComm((PetscObject)scene),
-                        "warning: pair %s: at first the sides overlap, by %.6g at (%.6g, %.6g), and contact pushes them apart; if that is "
-                        "not "
-                        "meant, mend %s_pair_gap or the boxes\n",
-                        name, (double)depth, (double)x[0], (double)x[1], name));
+  for (PetscInt i = 0; i < scene->npairs; ++i) {
+    PetscReal   depth, x[2];
+    const char *name;
+
+    PetscCall(AbutPairGetOverlap(scene->pair[i], &depth, x));
+    if (depth == 0.) continue;
+    PetscCall(AbutPairGetName(scene->pair[i], &name));
+    PetscCall(PetscPrintf(PetscObjectComm((PetscObject)scene),
+                          "warning: pair %s: at first the sides overlap, by %.6g at (%.6g, %.6g), and contact pushes them apart; if this "
+                          "is not meant, mend %s_pair_gap or the boxes\n",
+                          name, (double)depth, (double)x[0], (double)x[1], name));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -26,7 +27,6 @@ PetscErrorCode AbutScenePrintHeader_Private(AbutScene scene)
   PetscCall(AbutSceneViewTolerance_Private(scene, PETSC_VIEWER_STDOUT_(PetscObjectComm((PetscObject)scene))));
   for (PetscInt b = 0; b < scene->nbodies; ++b)
     PetscCall(AbutBodyViewIntegration(scene->body[b], PETSC_VIEWER_STDOUT_(PetscObjectComm((PetscObject)scene))));
-  for (PetscInt i = 0; i < scene->npairs; ++i) PetscCall(AbutSceneWarnOfOverlap_Private(scene, scene->pair[i]));
   PetscCall(PetscPrintf(PetscObjectComm((PetscObject)scene), "%5s %10s %8s %7s %10s %10s %12s %9s\n", "cycle", "unknowns", "cells",
                         "marked", "estimate", "eta_max", "sweeps", "seconds"));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -63,6 +63,7 @@ PetscErrorCode AbutSceneSetUp(AbutScene scene)
   PetscCall(AbutSceneRestart_Private(scene));
   PetscCall(AbutInterfaceSetUp(scene->iface));
   PetscCall(AbutSceneSetLinearTolerance_Private(scene));
+  PetscCall(AbutSceneWarnOfOverlap_Private(scene));
   PetscCall(AbutSceneClock_Private(scene, ABUT_TIME_SETUP));
   PetscCall(PetscObjectViewFromOptions((PetscObject)scene, NULL, "-scene_view"));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -145,7 +145,11 @@ static void AbutArchiveDump_Private(FILE *f, const void *ctx)
 @*/
 PetscErrorCode AbutArchiveWrite(AbutArchive ar, const char path[])
 {
+  PetscBool fits = (PetscBool)(ar->size <= PETSC_MPI_INT_MAX); /* it is read by one broadcast */
+
   PetscFunctionBegin;
+  PetscCallMPI(MPI_Bcast(&fits, 1, MPIU_BOOL, 0, ar->comm));
+  AbutCheckInput(fits, ar->comm, "checkpoint: %s would have more than 2 GB; leave it out", path);
   PetscCall(AbutFileWrite(ar->comm, path, AbutArchiveDump_Private, ar));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -54,12 +54,22 @@ static PetscErrorCode AbutInsertSceneFile_Private(const char file[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static char **AbutArguments; /* without the scene files; PETSc keeps pointing into them until it ends */
+
+/* Of a key that no scene file brought */
+static const char *AbutWhereFrom_Private(const char key[])
+{
+  for (char **word = AbutArguments; word && *word; ++word)
+    if (**word == '-' && !strcasecmp(*word + 1, key)) return "command line";
+  return "PETSC_OPTIONS or .petscrc";
+}
+
 /* Scene files first, then the command line, wherever on it the file stands: the command line wins */
 static PetscErrorCode AbutInsertScene_Private(int nfiles, const char *const files[])
 {
   PetscInt  n;
   char    **names, **values;
-  PetscBool explain;
+  PetscBool explain, late;
 
   PetscFunctionBegin;
   PetscCall(PetscOptionsHasName(NULL, NULL, "-explain", &explain));
@@ -82,11 +92,13 @@ static PetscErrorCode AbutInsertScene_Private(int nfiles, const char *const file
 
     PetscCall(PetscSNPrintf(key, sizeof(key), "-%s", names[i]));
     PetscCall(PetscOptionsSetValue(NULL, key, values[i]));
-    PetscCall(AbutSourceGiven_Private(names[i], "command line"));
+    PetscCall(AbutSourceGiven_Private(names[i], values[i], AbutWhereFrom_Private(names[i])));
     PetscCall(PetscFree(names[i]));
     PetscCall(PetscFree(values[i]));
   }
   PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-explain", &late));
+  AbutCheckInput(explain || !late, PETSC_COMM_WORLD, "explain: belongs on the command line, not in a scene file");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -134,7 +146,8 @@ PetscErrorCode AbutInitialize(int *argc, char ***args, const char help[])
     else if (i == 1 && (*args)[i][0] != '-') files[nfiles++] = (*args)[i];
     else rest[nrest++] = (*args)[i];
   }
-  stray = AbutStrayWord_Private(nrest, rest);
+  stray         = AbutStrayWord_Private(nrest, rest);
+  AbutArguments = rest;
   PetscCall(PetscInitialize(&nrest, &rest, NULL, help));
   PetscFunctionBegin;
   PetscCall(PetscPushErrorHandler(AbutErrorHandler_Private, NULL));
@@ -143,7 +156,7 @@ PetscErrorCode AbutInitialize(int *argc, char ***args, const char help[])
                  "with a dash",
                  stray);
   PetscCall(AbutInsertScene_Private(nfiles, files));
-  free(files); /* PETSc keeps pointing into rest, as it does into argv: AbutFinalize() frees it */
+  free(files);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -159,15 +172,13 @@ PetscErrorCode AbutInitialize(int *argc, char ***args, const char help[])
 PetscErrorCode AbutFinalize(void)
 {
   PetscBool      given; /* no PetscFunctionBegin: PetscFinalize() destroys the stack this function would stand on */
-  int            argc;
-  char         **args;
   PetscErrorCode ierr;
 
   PetscCall(PetscPopErrorHandler());
   PetscCall(PetscOptionsHasName(NULL, NULL, "-options_left", &given));
   if (!given) PetscCall(PetscOptionsSetValue(NULL, "-options_left", "no")); /* AbutOptionsCheckAllRead() has said it, in one line */
-  PetscCall(PetscGetArgs(&argc, &args));
   ierr = PetscFinalize();
-  free(args); /* made by AbutInitialize() */
+  free(AbutArguments);
+  AbutArguments = NULL;
   return ierr;
 }

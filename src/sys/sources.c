@@ -3,7 +3,9 @@
 /* For `abut -explain`: which keys there are, and where their values are from. Kept only if asked for. */
 
 typedef struct {
-  char *key, *from, *unless; /* from: NULL if it is not given, then `unless` is the value */
+  char *key;
+  char *from;  /* NULL if it is not given */
+  char *value; /* that which is given, or the default */
 } AbutSource;
 
 static struct {
@@ -18,7 +20,7 @@ static PetscErrorCode AbutSourcesFinalize_Private(void)
   for (PetscInt i = 0; i < AbutSources.n; ++i) {
     PetscCall(PetscFree(AbutSources.source[i].key));
     PetscCall(PetscFree(AbutSources.source[i].from));
-    PetscCall(PetscFree(AbutSources.source[i].unless));
+    PetscCall(PetscFree(AbutSources.source[i].value));
   }
   PetscCall(PetscFree(AbutSources.source));
   AbutSources.n = AbutSources.room = 0;
@@ -55,7 +57,7 @@ static PetscErrorCode AbutSourceFind_Private(const char key[], AbutSource **sour
 }
 
 /* A key, without its dash, is given; the last one to say so counts */
-PetscErrorCode AbutSourceGiven_Private(const char key[], const char from[])
+PetscErrorCode AbutSourceGiven_Private(const char key[], const char value[], const char from[])
 {
   AbutSource *source;
 
@@ -63,7 +65,9 @@ PetscErrorCode AbutSourceGiven_Private(const char key[], const char from[])
   if (!AbutSources.kept) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(AbutSourceFind_Private(key, &source));
   PetscCall(PetscFree(source->from));
+  PetscCall(PetscFree(source->value));
   PetscCall(PetscStrallocpy(from, &source->from));
+  PetscCall(PetscStrallocpy(value ? value : "", &source->value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -75,7 +79,7 @@ PetscErrorCode AbutSourceUnless_Private(const char key[], const char value[])
   PetscFunctionBegin;
   if (!AbutSources.kept) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(AbutSourceFind_Private(key, &source));
-  if (!source->unless) PetscCall(PetscStrallocpy(value, &source->unless));
+  if (!source->value) PetscCall(PetscStrallocpy(value, &source->value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -91,7 +95,7 @@ PetscErrorCode AbutSourceFile_Private(const char file[])
   PetscCall(PetscOptionsCreate(&options));
   PetscCall(PetscOptionsInsertFile(PETSC_COMM_WORLD, options, file, PETSC_TRUE));
   PetscCall(PetscOptionsLeftGet(options, &n, &names, &values));
-  for (PetscInt i = 0; i < n; ++i) PetscCall(AbutSourceGiven_Private(names[i], file));
+  for (PetscInt i = 0; i < n; ++i) PetscCall(AbutSourceGiven_Private(names[i], values[i], file));
   PetscCall(PetscOptionsLeftRestore(options, &n, &names, &values));
   PetscCall(PetscOptionsDestroy(&options));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -115,26 +119,23 @@ static int AbutSourceCompare_Private(const void *a, const void *b)
 
    Level: beginner
 
-   Note:
-   Keys that PETSc reads itself, such as `lower_ksp_type`, are listed if they are given; a default that is an empty text is not.
+   Notes:
+   Keys that PETSc reads itself, such as `lower_ksp_type`, are listed if they are given, but for those that it reads when it starts, such as
+   `log_view`; a default that is an empty text is not listed. A key of a file that another file names is that of the other one. What
+   `-scene_tol` puts aside is listed as it was given: `AbutSceneView()` says what is in force instead.
 
 .seealso: `AbutInitialize()`, `AbutSceneView()`
 @*/
 PetscErrorCode AbutOptionsView(PetscViewer viewer)
 {
   PetscFunctionBegin;
-  qsort(AbutSources.source, (size_t)AbutSources.n, sizeof(AbutSource), AbutSourceCompare_Private);
-  PetscCall(PetscViewerASCIIPrintf(viewer, "keys in force, with where they are from\n"));
+  if (AbutSources.n) qsort(AbutSources.source, (size_t)AbutSources.n, sizeof(AbutSource), AbutSourceCompare_Private);
+  PetscCall(PetscViewerASCIIPrintf(viewer, "keys that are given or read, and where they are from\n"));
   for (PetscInt i = 0; i < AbutSources.n; ++i) {
     const AbutSource *source = &AbutSources.source[i];
-    const char       *value  = source->unless;
-    char              option[PETSC_MAX_OPTION_NAME];
 
-    PetscCall(PetscSNPrintf(option, sizeof(option), "-%s", source->key));
-    if (source->from) PetscCall(PetscOptionsFindPair(NULL, NULL, option, &value, NULL));
-    if (!source->from && (!value || !value[0])) continue;
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  %-32s %-28s %s\n", source->key, value ? value : "",
-                                     source->from ? source->from : "default"));
+    if (!source->from && !source->value[0]) continue;
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  %-32s %-28s %s\n", source->key, source->value, source->from ? source->from : "default"));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

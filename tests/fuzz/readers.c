@@ -23,7 +23,7 @@ static void FuzzJudge(PetscErrorCode ierr)
 {
   const char *end;
 
-  fflush(stderr);
+  fclose(stderr);
   stderr = fuzz_terminal;
   if (ierr && ierr != PETSC_ERR_USER_INPUT && ierr != PETSC_ERR_FILE_WRITE) FuzzFail("an error that is no bad input", ierr);
   if (!ierr && fuzz_said[0]) FuzzFail("a message without an error", ierr);

@@ -4,10 +4,10 @@ import os, subprocess, tempfile
 from abut import BUILD, LAYERS, PROGRAM, run, run_error
 
 
-def say(*words, ranks=1):
+def say(*words, ranks=1, **environment):
     with tempfile.TemporaryDirectory() as folder:
         command = (["mpiexec", "-n", str(ranks)] if ranks > 1 else []) + [PROGRAM, *words]
-        result = subprocess.run(command, capture_output=True, text=True, cwd=folder)
+        result = subprocess.run(command, capture_output=True, text=True, cwd=folder, env={**os.environ, **environment})
         assert result.returncode == 0 and not result.stderr, result.stdout + result.stderr
         assert not os.listdir(folder), "nothing is written"
         return result.stdout
@@ -15,7 +15,7 @@ def say(*words, ranks=1):
 
 def keys(text):
     """value and source of every key"""
-    lines = text[text.index("keys in force") :].splitlines()[1:]
+    lines = text[text.index("keys that are given or read") :].splitlines()[1:]
     return {line.split()[0]: line.split(None, 2)[1:] for line in lines}
 
 
@@ -48,6 +48,23 @@ def test_where_keys_are_from():
         assert said["adaptor_max_level"] == ["4", "command line"]
         assert said["adaptor_threshold"] == ["0.2", more] and said["lower_ksp_type"] == ["cg", more]
         assert said["lower_mesh_cells"] == ["8,2", LAYERS] and said["adaptor_jump"] == ["1", "default"]
+
+
+def test_what_a_tolerance_puts_aside_is_listed_as_it_was_given():
+    text = say(LAYERS, "-explain", "-scene_tol", "0.1")
+    assert keys(text)["snes_ddneumann_gamma"][0] == "0.02" and "put aside" in text and "type: equal" in text
+    assert any(line.split() == "adaptor_follow from order 2 on default".split() for line in text.splitlines())
+
+
+def test_keys_from_elsewhere():
+    assert keys(say(LAYERS, "-explain", PETSC_OPTIONS="-adaptor_max_level 5"))["adaptor_max_level"] == ["5", "PETSC_OPTIONS or .petscrc"]
+    with tempfile.TemporaryDirectory() as folder:
+        file = os.path.join(folder, "scene.opts")
+        with open(file, "w") as f:
+            f.write("-explain\n")
+        assert "explain: belongs on the command line" in run_error(LAYERS, "-options_file", file)
+    assert "list: says what any scene may choose from" in run_error(LAYERS, "-list")
+    assert "warning: pair mid: at first the sides overlap, by 0.0001" in say(LAYERS, "-explain", "-mid_pair_gap", "0-1e-4")
 
 
 def test_a_key_that_nobody_reads_is_an_error_here_too():

@@ -161,6 +161,34 @@ START_TEST(nothing_else_changes)
 }
 END_TEST
 
+/* One cell of a family may go and the others may not: there is no new mesh */
+START_TEST(marks_that_merge_nothing_change_nothing)
+{
+  AbutMesh   mesh = CkBox(0., 0., 4., 1., 8, 2, _i ? ABUT_TRIANGLE : ABUT_QUAD);
+  PetscInt   generation[2];
+  PetscBool *merge;
+
+  CkRefine(mesh, CkEverywhere, 1);
+  CkOk(AbutMeshGetGeneration(mesh, &generation[0]));
+  for (PetscInt i = 0; i < 2; ++i) {
+    const AbutMeshTopology *t = CkTopology(mesh);
+    PetscReal               m[2];
+
+    CkOk(PetscMalloc1(t->ncells, &merge));
+    for (PetscInt c = 0; c < t->ncells; ++c) {
+      CkCenter(t, c, m);
+      merge[c] = (PetscBool)(m[0] < 0.2 && m[1] < 0.2);
+    }
+    CkOk(AbutMeshSetCoarsening(mesh, merge));
+    CkOk(AbutMeshAdapt(mesh, NULL));
+    CkOk(PetscFree(merge));
+  }
+  CkOk(AbutMeshGetGeneration(mesh, &generation[1]));
+  ck_assert_int_eq(generation[1], generation[0]);
+  CkOk(AbutMeshDestroy(&mesh));
+}
+END_TEST
+
 START_TEST(only_whole_families_merge_and_the_mesh_stays_balanced)
 {
   AbutMesh mesh = CkBox(0., 0., 4., 1., 8, 2, ABUT_QUAD);
@@ -416,6 +444,7 @@ int main(int argc, char **argv)
   int    status;
 
   PetscCall(AbutInitialize(&argc, &argv, NULL));
+  tcase_add_loop_test(tests, marks_that_merge_nothing_change_nothing, 0, 2);
   tcase_add_checked_fixture(tests, CkFolderMake, CkFolderRemove);
   tcase_add_loop_test(tests, merging_is_the_inverse_of_splitting, 0, 2);
   tcase_add_loop_test(tests, what_is_marked_often_enough_is_the_first_mesh, 0, 2);

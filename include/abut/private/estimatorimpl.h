@@ -7,7 +7,7 @@ struct _p_AbutEstimator {
   PETSCHEADER(AbutEstimatorOps);
   PetscInt    unknowns; /* solved for by the last estimate, beside those of the body */
   void       *data;     /* of the type */
-  const char *about;    /* likewise, one line */
+  const char *about;    /* the type in one line, for `abut -list`; NULL: nothing said */
 };
 
 /* "fembem, zz": the names in a type of several; what makes an estimator of them */

@@ -8,9 +8,9 @@ typedef struct _AbutMeshOps *AbutMeshOps;
 struct _AbutMeshOps {
   PetscErrorCode (*create)(AbutMesh, DM *); /* required: the grid of the box */
   PetscErrorCode (*keepfirst)(AbutMesh);    /* required: the current mesh is the first one, below which nothing is merged */
-  PetscErrorCode (*refine)(AbutMesh, const PetscBool[],
-                           DM *); /* required: the mesh with the marked cells (and what must follow) split, and others merged; a rank
-                                     may have no marks */
+  /* required: the mesh with the marked cells (and what must follow) split, and others merged; a rank may have no marks. The DM is the
+     present one on entry, and stays it if nothing changes. */
+  PetscErrorCode (*refine)(AbutMesh, const PetscBool[], DM *);
   PetscErrorCode (*getlevels)(AbutMesh, PetscInt[]); /* required: level of each local cell of the current DM */
   PetscErrorCode (*destroy)(AbutMesh);               /* optional, frees data */
 };

@@ -102,6 +102,7 @@ PETSC_INTERN PetscErrorCode AbutSceneGetUnknowns_Private(AbutScene, PetscInt *);
 PETSC_INTERN PetscErrorCode AbutSceneRecord_Private(AbutScene, PetscBool, PetscBool *);
 PETSC_INTERN PetscErrorCode AbutSceneRecordTimes_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutSceneRecordRatio_Private(AbutScene);
+PETSC_INTERN PetscErrorCode AbutSceneWarnOfOverlap_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutScenePrintHeader_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutScenePrintCycle_Private(AbutScene, PetscInt);
 PETSC_INTERN PetscErrorCode AbutScenePrintEnd_Private(AbutScene);

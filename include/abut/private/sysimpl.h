@@ -6,7 +6,7 @@
 /* Where keys are from, for AbutOptionsView() */
 PETSC_INTERN PetscErrorCode AbutSourcesKeep_Private(void);
 PETSC_INTERN PetscErrorCode AbutSourceFile_Private(const char[]);
-PETSC_INTERN PetscErrorCode AbutSourceGiven_Private(const char[], const char[]);
+PETSC_INTERN PetscErrorCode AbutSourceGiven_Private(const char[], const char[], const char[]);
 PETSC_INTERN PetscErrorCode AbutSourceUnless_Private(const char[], const char[]);
 
 /* What PETSc says of a bad option, as one line. AbutCallOptions(comm, what, Call(...)): a bad value that Call() meets is reported in one
