@@ -36,6 +36,7 @@ PEAKS = {  # with the peak pressure asked for, and meshes solved twice
 }
 LINEAR = {  # of order 1: steps small enough not to jump over an error, and pressures on the stiffer of two bodies
     "bulk .3": "-adaptor_bulk 0.3",
+    "bulk .35": "-adaptor_bulk 0.35",
     "bulk .4": "-adaptor_bulk 0.4",
     "bulk .5, pressures on upper": "-adaptor_bulk 0.5 -mid_pair_pressure_side first",
 }
@@ -53,6 +54,7 @@ LIMITS = {(1, 1): 9500, (2, 1): 900, (2, 2): 2100, (3, 2): 1700, (4, 3): 3800, (
 OTHERS_BY = [(order, estimator, "bulk .5", "yes" if order > 1 else "no") for order in ORDERS for estimator in ESTIMATORS]
 OTHERS_BY += [(2, estimator, "bulk .7", "yes") for estimator in ESTIMATORS]
 OTHERS_BY += [(1, estimator, marking, follow) for estimator in ("zz", "residual") for marking in LINEAR for follow in FOLLOWING]
+OTHERS_BY += [(1, "fembem", "bulk .35", "no")]
 PEAKS_BY = [
     (order, estimator, marking, "yes") for order in ORDERS[1:] for estimator in ("zz", "residual") for marking in PEAKS if ("1e-4" in marking) == (order < 4)
 ]
