@@ -3,8 +3,9 @@
 
 void AbutPatchSpaceSetUp_Private(PetscInt degree, AbutPatchSpace *space)
 {
+  space->degree  = degree;
   space->coefs   = 4 * degree + 3;
-  space->moments = space->coefs * (space->coefs + 3) / 2;
+  space->moments = 2 * (degree + 1) * (degree + 1) + space->coefs;
 }
 
 /* s11 + s22 = 4 Re phi', s22 - s11 + 2 i s12 = 2 S, S = conj(z) phi'' + psi' */
@@ -31,20 +32,62 @@ static void AbutPatchStresses_Private(const AbutPatchSpace *space, const PetscRe
   }
 }
 
-static PetscReal AbutStressProduct_Private(const PetscReal s[3], const PetscReal r[3])
+/* Where the sum of z^a conj(z)^b is among the moments, a >= b: by a+b, then by b */
+static PetscInt AbutMomentPlace_Private(PetscInt a, PetscInt b)
 {
-  return s[0] * r[0] + s[1] * r[1] + 2. * s[2] * r[2];
+  return 2 * ((a + b + 1) * (a + b + 1) / 4 + b);
+}
+
+static double complex AbutMoment_Private(const PetscReal m[], PetscInt a, PetscInt b)
+{
+  const PetscReal *sum = m + AbutMomentPlace_Private(PetscMax(a, b), PetscMin(a, b));
+
+  return a >= b ? sum[0] + _Complex_I * sum[1] : sum[0] - _Complex_I * sum[1];
 }
 
 /* One more sample of the stress, at d from the vertex */
 void AbutPatchAdd_Private(const AbutPatchSpace *space, const PetscReal d[2], const PetscReal s[3], PetscReal m[])
 {
-  PetscReal own[ABUT_PATCH_COEFS_MAX][3];
+  const double complex z = d[0] + _Complex_I * d[1];
+  PetscReal            own[ABUT_PATCH_COEFS_MAX][3], square = 1.; /* |z|^(2b) */
 
+  for (PetscInt b = 0; b <= space->degree; ++b) {
+    double complex power = square; /* z^a conj(z)^b */
+
+    for (PetscInt a = b; a + b <= 2 * space->degree; ++a) {
+      m[AbutMomentPlace_Private(a, b)] += creal(power);
+      m[AbutMomentPlace_Private(a, b) + 1] += cimag(power);
+      power *= z;
+    }
+    square *= creal(z * conj(z));
+  }
+  m += space->moments - space->coefs;
   AbutPatchStresses_Private(space, d, own);
-  for (PetscInt i = 0; i < space->coefs; ++i)
-    for (PetscInt j = 0; j <= i; ++j) *m++ += AbutStressProduct_Private(own[i], own[j]);
-  for (PetscInt i = 0; i < space->coefs; ++i) *m++ += AbutStressProduct_Private(own[i], s);
+  for (PetscInt i = 0; i < space->coefs; ++i) m[i] += own[i][0] * s[0] + own[i][1] * s[1] + 2. * own[i][2] * s[2];
+}
+
+/* Stress i of AbutPatchStresses_Private(): is it of phi' or of psi', and of c z^k */
+static PetscBool AbutPatchTerm_Private(PetscInt i, PetscInt *k, double complex *c)
+{
+  const PetscInt at = i ? i + 1 : 0; /* with phi' = i in its place there are four of each k */
+
+  *k = at / 4;
+  *c = at % 2 ? _Complex_I : 1.;
+  return (PetscBool)(at % 4 < 2);
+}
+
+/* The sum over the samples of the product of two of these stresses, s:r = 8 Re phi' Re phi'_r + 2 Re(S conj(S_r)) */
+static PetscReal AbutPatchProduct_Private(const PetscReal m[], PetscInt i, PetscInt j)
+{
+  PetscInt        k, l;
+  double complex  c, d;
+  const PetscBool phi = AbutPatchTerm_Private(i, &k, &c), phir = AbutPatchTerm_Private(j, &l, &d);
+
+  if (phi && phir)
+    return 4. * creal(c * d * AbutMoment_Private(m, k + l, 0)) + (4. + 2. * k * l) * creal(c * conj(d) * AbutMoment_Private(m, k, l));
+  if (phi) return k ? 2. * k * creal(c * conj(d) * AbutMoment_Private(m, k - 1, l + 1)) : 0.;
+  if (phir) return l ? 2. * l * creal(d * conj(c) * AbutMoment_Private(m, l - 1, k + 1)) : 0.;
+  return 2. * creal(c * conj(d) * AbutMoment_Private(m, k, l));
 }
 
 /* The factor of the normal equations; a stress that the samples do not tell apart from those before it is left out. The test is relative
@@ -56,7 +99,7 @@ static void AbutPatchFactor_Private(PetscInt n, const PetscReal m[], PetscReal L
     PetscReal own = 0.;
 
     for (PetscInt j = 0; j <= i; ++j) {
-      L[i][j] = own = *m++;
+      L[i][j] = own = AbutPatchProduct_Private(m, i, j);
       for (PetscInt k = 0; k < j; ++k) L[i][j] -= L[i][k] * L[j][k];
       if (j < i) L[i][j] = out[j] ? 0. : L[i][j] / L[j][j];
     }

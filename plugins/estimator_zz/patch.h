@@ -8,7 +8,9 @@
 
 /* Stresses of a degree that are in balance without body forces and those of some displacement */
 typedef struct {
-  PetscInt coefs, moments; /* sums of the products of these stresses by pairs, of each with the samples */
+  PetscInt degree, coefs;
+  PetscInt moments; /* sums of z^a conj(z)^b, a >= b, a+b <= 2*degree, of which all products of two of these stresses are made; then of the
+                       products of each with the samples */
 } AbutPatchSpace;
 
 PETSC_INTERN void AbutPatchSpaceSetUp_Private(PetscInt, AbutPatchSpace *);

@@ -69,16 +69,18 @@ def test_the_force_converges_with_the_mesh():
 
 
 def test_an_adapted_mesh_has_the_error_of_a_uniform_one_with_twice_the_unknowns():
-    """The error is that of the strain energy, which for given displacements is least at the solution. No mesh of this order can do with
-    less than a third of the unknowns, says the best division of the displacement's second derivatives into equal errors."""
+    """The error is that of the strain energy, which for given displacements is least at the solution. Meshes refined by steps do not meet an
+    error exactly: unknowns are brought to that of the uniform mesh by their law, unknowns times square of the error. No mesh of this order
+    can do with less than a third, says the best division of the displacement's second derivatives into equal errors."""
     error = lambda record: math.sqrt(record["energy.strain"] / (EXACT["W1"]["value"] + EXACT["W2"]["value"]) - 1)
     uniform, parts, pressure, edge = solve(32, 32)[0], [], [], []
     for estimator in "fembem", "zz":
         adapt = "-adaptor_type doerfler -adaptor_target 0.015 -adaptor_bodies lower,upper -adaptor_max_level 20"
         record, nodes = solve(2, 2, 0, *adapt.split(), "-estimator_type", estimator)
         print(f"{record['unknowns']} unknowns, error {error(record):.5f}; uniform {uniform['unknowns']}, {error(uniform):.5f}")
-        assert error(record) <= error(uniform), (error(record), error(uniform))
-        parts += [record[f"body.{body}.unknowns"] / uniform[f"body.{body}.unknowns"] for body in ("lower", "upper")]
+        same = (error(record) / error(uniform)) ** 2
+        assert 0.6 < same < 1.4, (error(record), error(uniform))
+        parts += [same * record[f"body.{body}.unknowns"] / uniform[f"body.{body}.unknowns"] for body in ("lower", "upper")]
         pressure += [relative(record["pair.mid.force"], FORCE), 0.1 * relative(nodes[0][1], MIDDLE)]
         edge.append(abs(record["pair.mid.contact_edge"] - EDGE) / min(record[f"body.{body}.hmin"] for body in ("lower", "upper")))
     case("V04", "unknowns of a body, fembem and zz, over those of a uniform mesh as good", max(parts), 0.5)
