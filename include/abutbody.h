@@ -83,16 +83,18 @@ PETSC_EXTERN PetscErrorCode AbutVonMises(const PetscReal[3], PetscReal, PetscRea
 /* One side of a body as an ordered list of nodes, the same on all ranks. Nodes follow the boundary with the body on the left; a node of
    a side always carries unknowns (hanging ones never lie on the boundary). */
 typedef struct {
-  PetscInt   order;  /* of the displacement */
-  PetscInt   n;      /* nodes; element i has the nodes order*i to order*(i+1), Gauss-Lobatto points */
-  PetscReal *x;      /* [2*n] coordinates */
-  PetscReal *normal; /* [2*elements] outward unit normal of each element */
-  PetscInt  *global; /* [n] global number of the node, as in AbutMeshTopology */
-  PetscBool *fixed;  /* [n] its displacement along the normal is prescribed */
+  PetscInt   order;    /* of the displacement */
+  PetscInt   n;        /* nodes; element i has the nodes order*i to order*(i+1), Gauss-Lobatto points */
+  PetscReal *x;        /* [2*n] coordinates */
+  PetscReal *normal;   /* [2*elements] outward unit normal of each element */
+  PetscBool  straight; /* these are all the same */
+  PetscInt  *global;   /* [n] global number of the node, as in AbutMeshTopology */
+  PetscBool *fixed;    /* [n] its displacement along the normal is prescribed */
 } AbutSide;
 PETSC_EXTERN PetscErrorCode AbutBodyGetSide(AbutBody, PetscInt, const AbutSide **);
-PETSC_EXTERN PetscErrorCode AbutBodyGetSideTrace(AbutBody, PetscInt, Vec, PetscReal[]);
-PETSC_EXTERN PetscErrorCode AbutBodyAddSideForce(AbutBody, PetscInt, const PetscReal[], Vec);
+PETSC_EXTERN PetscErrorCode AbutSideGetNodeNormal(const AbutSide *, PetscInt, PetscReal[2]);
+PETSC_EXTERN PetscErrorCode AbutBodyGetSideTrace(AbutBody, PetscInt, PetscInt, Vec, PetscReal[]);
+PETSC_EXTERN PetscErrorCode AbutBodyAddSideForce(AbutBody, PetscInt, PetscInt, const PetscReal[], Vec);
 PETSC_EXTERN PetscErrorCode AbutBodyGetFarSide(AbutBody, const PetscReal[2], PetscInt *, AbutConditionType *);
 PETSC_EXTERN PetscErrorCode AbutBodyGetSupportDisplacement(AbutBody, const PetscReal[2], const PetscReal[2], PetscReal *, PetscBool *);
 

@@ -80,6 +80,7 @@ PETSC_EXTERN PetscErrorCode AbutMeshGetSideCount(AbutMesh, PetscInt *);
 PETSC_EXTERN PetscErrorCode AbutMeshGetSideName(AbutMesh, PetscInt, const char *[]);
 PETSC_EXTERN PetscErrorCode AbutMeshFindSide(AbutMesh, const char[], const char[], PetscInt *);
 PETSC_EXTERN PetscErrorCode AbutMeshGetSideEnds(AbutMesh, PetscInt, PetscReal[4], PetscReal[2]);
+PETSC_EXTERN PetscErrorCode AbutMeshGetSidePolygon(AbutMesh, PetscInt, PetscInt *, const PetscReal *[]);
 PETSC_EXTERN PetscErrorCode AbutMeshAdapt(AbutMesh, const PetscBool[]);
 PETSC_EXTERN PetscErrorCode AbutMeshSetCoarsening(AbutMesh, const PetscBool[]);
 PETSC_EXTERN PetscErrorCode AbutMeshKeepCell(AbutMesh, PetscInt);

@@ -44,17 +44,20 @@ PETSC_EXTERN PetscErrorCode AbutPairGetBodies(AbutPair, AbutBody[2], PetscInt[2]
 PETSC_EXTERN PetscErrorCode AbutPairSetTheta(AbutPair, PetscReal);
 PETSC_EXTERN PetscErrorCode AbutPairGetTheta(AbutPair, PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutPairGetCompliance(AbutPair, PetscReal[2]);
-PETSC_EXTERN PetscErrorCode AbutPairGetSharedEnds(AbutPair, PetscReal[2][2][2], PetscReal[2][2]);
+PETSC_EXTERN PetscErrorCode AbutPairGetSharedPoints(AbutPair, PetscInt *, PetscReal *[]);
 PETSC_EXTERN PetscErrorCode AbutPairGetSizes(AbutPair, PetscInt[2]);
+PETSC_EXTERN PetscErrorCode AbutPairGetComponents(AbutPair, PetscInt *);
 
-/* Traces u_n1, u_n2 at the nodes of the two sides (as ordered in AbutSide) -> nodal pressures; nodal pressures -> nodal normal forces on
-   both sides */
+/* Traces at the nodes of the two sides (as ordered in AbutSide) -> nodal pressures; nodal pressures -> nodal forces on both sides. They
+   have AbutPairGetComponents() values a node: 1, along the outward normal, if the sides are straight, otherwise 2. */
 PETSC_EXTERN PetscErrorCode AbutPairComputePenetration(AbutPair, const PetscReal[], const PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutPairComputePressure(AbutPair, const PetscReal[], const PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutPairComputeForce(AbutPair, const PetscReal[], PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutPairComputeSupport(AbutPair, PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutPairComputeWinkler(AbutPair, PetscReal[], PetscReal[], PetscBool *);
 PETSC_EXTERN PetscErrorCode AbutPairGetGap(AbutPair, const PetscReal[2], PetscReal *);
+PETSC_EXTERN PetscErrorCode AbutPairGetNodeGap(AbutPair, PetscInt, PetscReal *);
+PETSC_EXTERN PetscErrorCode AbutPairSetNormalTrace(AbutPair, PetscInt, const PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutPairGetOverlap(AbutPair, PetscReal *, PetscReal[2]);
 PETSC_EXTERN PetscErrorCode AbutPairGetPressureNodes(AbutPair, PetscInt *, PetscInt *, const PetscReal *[], const PetscReal *[]);
 PETSC_EXTERN PetscErrorCode AbutPairRecoverPressure(AbutPair, const PetscReal[], PetscReal[]);

@@ -38,6 +38,10 @@ static void AbutSideNormals_Private(AbutSide *s)
     s->normal[2 * (i / s->order)]     = d[1] / h;
     s->normal[2 * (i / s->order) + 1] = -d[0] / h;
   }
+  s->straight = PETSC_TRUE;
+  for (PetscInt e = 1; e < (s->n - 1) / s->order; ++e)
+    for (PetscInt d = 0; d < 2; ++d)
+      if (PetscAbsReal(s->normal[2 * e + d] - s->normal[d]) > 1e-9) s->straight = PETSC_FALSE;
 }
 
 /*@C
@@ -89,35 +93,53 @@ PetscErrorCode AbutBodyGetSide(AbutBody body, PetscInt side, const AbutSide **s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Unit normal at a node: the direction of the sum of the normals of the elements that meet there */
-static void AbutSideNodeNormal_Private(const AbutSide *s, PetscInt i, PetscReal n[2])
+/*@C
+   AbutSideGetNodeNormal - The unit normal at a node of a side: the direction of the sum of the normals of the elements that meet there
+
+   Not Collective
+
+   Input Parameters:
++  s - the side
+-  i - number of the node
+
+   Output Parameter:
+.  n - [2] outward unit normal
+
+   Level: developer
+
+.seealso: `AbutBodyGetSide()`
+@*/
+PetscErrorCode AbutSideGetNodeNormal(const AbutSide *s, PetscInt i, PetscReal n[2])
 {
   const PetscInt   behind = PetscMin(i, s->n - 2) / s->order, before = PetscMax(i - 1, 0) / s->order;
   const PetscReal *p = s->normal + 2 * before, *q = s->normal + 2 * behind;
   const PetscReal  m[2] = {p[0] + q[0], p[1] + q[1]}, h = PetscSqrtReal(m[0] * m[0] + m[1] * m[1]);
 
+  PetscFunctionBegin;
   n[0] = m[0] / h;
   n[1] = m[1] / h;
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@C
-   AbutBodyGetSideTrace - The normal trace of a displacement on a side
+   AbutBodyGetSideTrace - The trace of a displacement on a side
 
    Collective
 
    Input Parameters:
-+  body - the body
-.  side - number of the side
--  u    - displacement, of the layout of `AbutBodyCreateVec()`
++  body       - the body
+.  side       - number of the side
+.  components - 1 for the normal displacement, 2 for both components
+-  u          - displacement, of the layout of `AbutBodyCreateVec()`
 
    Output Parameter:
-.  un - [n] normal displacement at the nodes of the side, outward positive, length; the same on all ranks
+.  trace - [components*n] at the nodes of the side, length: along the outward normal, or (u1, u2); the same on all ranks
 
    Level: developer
 
 .seealso: `AbutBodyGetSide()`, `AbutBodyAddSideForce()`
 @*/
-PetscErrorCode AbutBodyGetSideTrace(AbutBody body, PetscInt side, Vec u, PetscReal un[])
+PetscErrorCode AbutBodyGetSideTrace(AbutBody body, PetscInt side, PetscInt components, Vec u, PetscReal trace[])
 {
   const AbutSide  *s;
   const PetscReal *value;
@@ -131,29 +153,32 @@ PetscErrorCode AbutBodyGetSideTrace(AbutBody body, PetscInt side, Vec u, PetscRe
     const PetscInt node = i + 1 < s->n ? s->order * first + i : AbutBoundaryNode(body->boundary, first + n - 1, s->order);
     PetscReal      normal[2];
 
-    AbutSideNodeNormal_Private(s, i, normal);
-    un[i] = normal[0] * value[2 * node] + normal[1] * value[2 * node + 1];
+    for (PetscInt d = 0; components == 2 && d < 2; ++d) trace[2 * i + d] = value[2 * node + d];
+    if (components == 2) continue;
+    PetscCall(AbutSideGetNodeNormal(s, i, normal));
+    trace[i] = normal[0] * value[2 * node] + normal[1] * value[2 * node + 1];
   }
   PetscCall(AbutBodyUngatherBoundary_Private(body, &value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@C
-   AbutBodyAddSideForce - Adds normal nodal forces on a side to a vector of nodal forces
+   AbutBodyAddSideForce - Adds nodal forces on a side to a vector of nodal forces
 
    Collective
 
    Input Parameters:
-+  body  - the body
-.  side  - number of the side
-.  force - [n] forces along the outward normal at the nodes of the side, stress times length; the same on all ranks
--  f     - vector of the layout of `AbutBodyCreateVec()`
++  body       - the body
+.  side       - number of the side
+.  components - 1 for forces along the outward normal, 2 for both components
+.  force      - [components*n] forces at the nodes of the side, stress times length; the same on all ranks
+-  f          - vector of the layout of `AbutBodyCreateVec()`
 
    Level: developer
 
 .seealso: `AbutBodyGetSideTrace()`, `AbutBodySolve()`
 @*/
-PetscErrorCode AbutBodyAddSideForce(AbutBody body, PetscInt side, const PetscReal force[], Vec f)
+PetscErrorCode AbutBodyAddSideForce(AbutBody body, PetscInt side, PetscInt components, const PetscReal force[], Vec f)
 {
   const AbutSide *s;
   PetscInt        low, high;
@@ -167,8 +192,8 @@ PetscErrorCode AbutBodyAddSideForce(AbutBody body, PetscInt side, const PetscRea
     PetscReal normal[2];
 
     if (2 * s->global[i] < low || 2 * s->global[i] >= high) continue;
-    AbutSideNodeNormal_Private(s, i, normal);
-    for (PetscInt d = 0; d < 2; ++d) a[2 * s->global[i] + d - low] += force[i] * normal[d];
+    PetscCall(AbutSideGetNodeNormal(s, i, normal));
+    for (PetscInt d = 0; d < 2; ++d) a[2 * s->global[i] + d - low] += components == 2 ? force[2 * i + d] : force[i] * normal[d];
   }
   PetscCall(VecRestoreArray(f, &a));
   PetscFunctionReturn(PETSC_SUCCESS);

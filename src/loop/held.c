@@ -1,9 +1,9 @@
 #include <abut/private/loopimpl.h> /*I "abutloop.h" I*/
 
 /* Is every rigid motion that the prescribed displacements leave free resisted by contact? Contact has no friction, so it resists a motion
-   of the bodies only by its normal jump; along a straight side the jump is linear, so the ends of the part that two sides share say all. */
+   of the bodies only by its normal jump, at the points of AbutPairGetSharedPoints(). */
 
-/* One row per end of a pair's shared part, one column per free motion of a body: the normal displacements of both sides, added */
+/* One row per shared point of a pair, one column per free motion of a body: the normal displacements of both sides, added */
 typedef struct {
   PetscInt   rows, columns;
   PetscInt  *body, *mode; /* [columns] */
@@ -13,8 +13,16 @@ typedef struct {
 static PetscErrorCode AbutJumpsCreate_Private(AbutInterface f, AbutJumps *j)
 {
   PetscFunctionBegin;
-  j->rows    = 2 * f->npairs;
+  j->rows    = 0;
   j->columns = 0;
+  for (PetscInt i = 0; i < f->npairs; ++i) {
+    PetscReal *x;
+    PetscInt   n;
+
+    PetscCall(AbutPairGetSharedPoints(f->pair[i], &n, &x));
+    PetscCall(PetscFree(x));
+    j->rows += n;
+  }
   for (PetscInt pass = 0; pass < 2; ++pass) {
     if (pass) PetscCall(PetscMalloc2(j->columns, &j->body, j->columns, &j->mode));
     j->columns = 0;
@@ -58,22 +66,30 @@ static PetscErrorCode AbutMotionAtCorners_Private(AbutBody body, PetscInt mode, 
 
 static PetscErrorCode AbutJumpsFill_Private(AbutInterface f, AbutJumps *j)
 {
+  PetscInt row = 0;
+
   PetscFunctionBegin;
-  for (PetscInt t = 0; t < 2 * f->npairs; ++t) {
-    PetscReal point[2][2][2], normal[2][2];
+  for (PetscInt i = 0; i < f->npairs; ++i) {
+    PetscReal *x;
+    PetscInt   n;
 
-    PetscCall(AbutPairGetSharedEnds(f->pair[t / 2], point, normal));
-    for (PetscInt c = 0; c < j->columns; ++c) {
-      PetscReal corner[2][2], scale, u[2];
-      PetscBool turn;
+    PetscCall(AbutPairGetSharedPoints(f->pair[i], &n, &x));
+    for (PetscInt c = 0; c < j->columns; ++c)
+      for (PetscInt s = 0; s < 2; ++s) {
+        PetscReal corner[2][2], scale, u[2];
+        PetscBool turn;
 
-      if (j->body[c] != f->bodyof[t]) continue;
-      PetscCall(AbutMotionAtCorners_Private(f->body[j->body[c]], j->mode[c], corner, &turn, &scale));
-      for (PetscInt e = 0; e < 2; ++e) {
-        PetscCall(AbutBodyGetFreeMotion(f->body[j->body[c]], j->mode[c], point[t % 2][e], u));
-        j->M[(2 * (t / 2) + e) * j->columns + c] = (u[0] * normal[t % 2][0] + u[1] * normal[t % 2][1]) / scale;
+        if (j->body[c] != f->bodyof[2 * i + s]) continue;
+        PetscCall(AbutMotionAtCorners_Private(f->body[j->body[c]], j->mode[c], corner, &turn, &scale));
+        for (PetscInt k = 0; k < n; ++k) {
+          const PetscReal *normal = x + 6 * k + 4;
+
+          PetscCall(AbutBodyGetFreeMotion(f->body[j->body[c]], j->mode[c], x + 6 * k + 2 * s, u));
+          j->M[(row + k) * j->columns + c] += (s ? -1. : 1.) * (u[0] * normal[0] + u[1] * normal[1]) / scale;
+        }
       }
-    }
+    PetscCall(PetscFree(x));
+    row += n;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -54,6 +54,7 @@ PetscErrorCode AbutInterfaceCreate(MPI_Comm comm, PetscInt nbodies, AbutBody bod
     PetscCall(AbutPairGetBodies(pairs[t / 2], ends, sides));
     for (PetscInt b = 0; b < nbodies; ++b)
       if (bodies[b] == ends[t % 2]) f->bodyof[t] = b;
+    if (!ends[t % 2]) f->bodyof[t] = -1;
   }
   *iface = f;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -70,10 +71,11 @@ static PetscErrorCode AbutInterfaceLayout_Private(AbutInterface f)
   PetscCall(PetscMalloc2(all, &f->owned, all, &f->place));
   for (PetscInt i = 0; i < f->npairs; ++i) {
     AbutBody bodies[2];
-    PetscInt sides[2];
+    PetscInt sides[2], m;
 
     PetscCall(AbutPairGetBodies(f->pair[i], bodies, sides));
-    for (PetscInt s = 0; s < 2; ++s) {
+    PetscCall(AbutPairGetComponents(f->pair[i], &m));
+    for (PetscInt s = 0; s < 2 && bodies[s]; ++s) {
       const AbutSide         *side;
       const AbutMeshTopology *t;
       AbutMesh                mesh;
@@ -81,8 +83,9 @@ static PetscErrorCode AbutInterfaceLayout_Private(AbutInterface f)
       PetscCall(AbutBodyGetSide(bodies[s], sides[s], &side));
       PetscCall(AbutBodyGetMesh(bodies[s], &mesh));
       PetscCall(AbutMeshGetTopology(mesh, &t));
-      for (PetscInt k = 0; k < side->n; ++k)
-        if (side->global[k] >= t->firstowned && side->global[k] < t->firstowned + t->nowned) f->owned[n++] = f->offset[2 * i + s] + k;
+      for (PetscInt k = 0; k < m * side->n; ++k)
+        if (side->global[k / m] >= t->firstowned && side->global[k / m] < t->firstowned + t->nowned)
+          f->owned[n++] = f->offset[2 * i + s] + k;
     }
   }
   f->nowned = n;
@@ -118,12 +121,13 @@ PetscErrorCode AbutInterfaceSetUp(AbutInterface iface)
   for (PetscInt b = 0; b < iface->nbodies; ++b) PetscCall(AbutBodySetUp(iface->body[b]));
   PetscCall(PetscCalloc1(2 * iface->npairs + 1, &iface->offset));
   for (PetscInt i = 0; i < iface->npairs; ++i) {
-    PetscInt n[2];
+    PetscInt n[2], m;
 
     PetscCall(AbutPairSetUp(iface->pair[i]));
     PetscCall(AbutPairGetSizes(iface->pair[i], n));
-    iface->offset[2 * i + 1] = iface->offset[2 * i] + n[0];
-    iface->offset[2 * i + 2] = iface->offset[2 * i + 1] + n[1];
+    PetscCall(AbutPairGetComponents(iface->pair[i], &m));
+    iface->offset[2 * i + 1] = iface->offset[2 * i] + m * n[0];
+    iface->offset[2 * i + 2] = iface->offset[2 * i + 1] + m * n[1];
   }
   all = iface->offset[2 * iface->npairs];
   PetscCall(AbutInterfaceLayout_Private(iface));
@@ -226,7 +230,7 @@ PetscErrorCode AbutInterfaceDestroy(AbutInterface *iface)
 .  iface - the map, set up
 
    Output Parameter:
-.  x - u_n1 and u_n2 of every pair, length; each value on the rank that owns its node
+.  x - u_n1 and u_n2 of every pair, or both components where its sides are curved, length; each value on the rank that owns its node
 
    Level: intermediate
 
@@ -338,7 +342,7 @@ PetscErrorCode AbutInterfaceGetPressure(AbutInterface iface, PetscInt pair, cons
 }
 
 /*@C
-   AbutInterfaceGetTrace - The normal displacements that the last sweep gave on one side of a pair: those of the bodies as they now are
+   AbutInterfaceGetTrace - The displacements that the last sweep gave on one side of a pair: those of the bodies as they now are
 
    Not Collective
 
@@ -348,7 +352,8 @@ PetscErrorCode AbutInterfaceGetPressure(AbutInterface iface, PetscInt pair, cons
 -  side  - 0 or 1
 
    Output Parameter:
-.  u - displacements at the nodes of the side, length; the same on all ranks, owned by the map
+.  u - displacements at the nodes of the side, length, as many values a node as `AbutPairGetComponents()` says; the same on all ranks, owned
+       by the map
 
    Level: intermediate
 

@@ -108,7 +108,7 @@ static PetscErrorCode AbutModesCreate_Private(AbutInterface f, AbutContactModel 
   PetscCall(PetscMalloc1(m->rows * m->n, &m->W));
   PetscCall(PetscCalloc2(f->offset[2 * pair + 2] - f->offset[2 * pair], &trace, n, &g));
   for (PetscInt k = 0; k < m->n; ++k) {
-    PetscCall(PetscArraycpy(trace + f->offset[t] - f->offset[2 * pair], shape + k * side->n, side->n));
+    PetscCall(AbutPairSetNormalTrace(f->pair[pair], t % 2, shape + k * side->n, trace + f->offset[t] - f->offset[2 * pair]));
     PetscCall(AbutPairComputePenetration(f->pair[pair], trace, trace + f->offset[2 * pair + 1] - f->offset[2 * pair], g));
     for (PetscInt c = 0; c < m->rows; ++c) m->W[k * m->rows + c] = g[model->node[first + c]] - model->open[first + c];
   }
@@ -210,11 +210,12 @@ PetscErrorCode AbutInterfaceLayers_Private(AbutInterface f, AbutContactModel mod
   AbutModes *m;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(2 * f->npairs, &m));
-  for (PetscInt t = 0; t < 2 * f->npairs; ++t) PetscCall(AbutModesCreate_Private(f, model, t, &m[t]));
+  PetscCall(PetscCalloc1(2 * f->npairs, &m));
+  for (PetscInt t = 0; t < 2 * f->npairs; ++t)
+    if (f->bodyof[t] >= 0) PetscCall(AbutModesCreate_Private(f, model, t, &m[t]));
   for (PetscInt t = 0; t < 2 * f->npairs; ++t)
     for (PetscInt r = 0; r < 2 * f->npairs; ++r)
-      if (f->bodyof[t] == f->bodyof[r]) PetscCall(AbutLayerSides_Private(f, model, t, r, m));
+      if (f->bodyof[t] >= 0 && f->bodyof[t] == f->bodyof[r]) PetscCall(AbutLayerSides_Private(f, model, t, r, m));
   for (PetscInt t = 0; t < 2 * f->npairs; ++t) PetscCall(AbutModesDestroy_Private(&m[t]));
   PetscCall(PetscFree(m));
   PetscFunctionReturn(PETSC_SUCCESS);

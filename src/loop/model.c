@@ -62,10 +62,11 @@ static PetscErrorCode AbutContactModelMotions_Private(AbutInterface f, AbutConta
       PetscCall(PetscArrayzero(trace, all));
       for (PetscInt t = 0; t < 2 * f->npairs; ++t) {
         AbutBody bodies[2];
-        PetscInt sides[2];
+        PetscInt sides[2], each;
 
         PetscCall(AbutPairGetBodies(f->pair[t / 2], bodies, sides));
-        if (f->bodyof[t] == b) PetscCall(AbutBodyGetSideTrace(bodies[t % 2], sides[t % 2], mode[k], trace + f->offset[t]));
+        PetscCall(AbutPairGetComponents(f->pair[t / 2], &each));
+        if (f->bodyof[t] == b) PetscCall(AbutBodyGetSideTrace(bodies[t % 2], sides[t % 2], each, mode[k], trace + f->offset[t]));
       }
       PetscCall(AbutInterfacePenetration_Private(f, model, trace, G));
       for (PetscInt c = 0; c < model->n; ++c) G[c] -= model->open[c];

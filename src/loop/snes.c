@@ -206,6 +206,7 @@ PetscErrorCode AbutInterfaceGetChange(AbutInterface iface, Vec step, Vec x, Pets
   for (PetscInt t = 0; t < 2 * iface->npairs; ++t) { /* a body that is in no pair has no trace to change */
     const PetscInt b = iface->bodyof[t];
 
+    if (b < 0) continue;
     *change = PetscMax(*change, sum[2 * b + 1] > 0. ? PetscSqrtReal(sum[2 * b] / sum[2 * b + 1]) : PETSC_INFINITY);
   }
   PetscCall(PetscFree(sum));

@@ -10,29 +10,33 @@ PetscErrorCode AbutInterfaceForces_Private(AbutInterface f, PetscReal *const p[]
   for (PetscInt i = 0; i < f->npairs; ++i) {
     const PetscInt *o = f->offset + 2 * i;
     AbutBody        bodies[2];
-    PetscInt        sides[2];
+    PetscInt        sides[2], m;
     PetscReal      *nodal;
 
     PetscCall(AbutPairGetBodies(f->pair[i], bodies, sides));
+    PetscCall(AbutPairGetComponents(f->pair[i], &m));
     PetscCall(PetscMalloc1(o[2] - o[0], &nodal));
     PetscCall(AbutPairComputeForce(f->pair[i], p[i], nodal, nodal + o[1] - o[0]));
     for (PetscInt k = 0; k < o[2] - o[0]; ++k) nodal[k] = -nodal[k]; /* a pressure pushes against the outward normal */
-    for (PetscInt s = 0; s < 2; ++s) PetscCall(AbutBodyAddSideForce(bodies[s], sides[s], nodal + o[s] - o[0], force[f->bodyof[2 * i + s]]));
+    for (PetscInt s = 0; s < 2 && bodies[s]; ++s)
+      PetscCall(AbutBodyAddSideForce(bodies[s], sides[s], m, nodal + o[s] - o[0], force[f->bodyof[2 * i + s]]));
     PetscCall(PetscFree(nodal));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Displacements of all bodies -> normal traces on both sides of all pairs */
+/* Displacements of all bodies -> traces on both sides of all pairs */
 PetscErrorCode AbutInterfaceTraces_Private(AbutInterface f, const Vec u[], PetscReal trace[])
 {
   PetscFunctionBegin;
   for (PetscInt t = 0; t < 2 * f->npairs; ++t) {
     AbutBody bodies[2];
-    PetscInt sides[2];
+    PetscInt sides[2], m;
 
+    if (f->bodyof[t] < 0) continue;
     PetscCall(AbutPairGetBodies(f->pair[t / 2], bodies, sides));
-    PetscCall(AbutBodyGetSideTrace(bodies[t % 2], sides[t % 2], u[f->bodyof[t]], trace + f->offset[t]));
+    PetscCall(AbutPairGetComponents(f->pair[t / 2], &m));
+    PetscCall(AbutBodyGetSideTrace(bodies[t % 2], sides[t % 2], m, u[f->bodyof[t]], trace + f->offset[t]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -2,19 +2,20 @@
 
 /* Traces and pressures across a change of mesh: kept with the coordinates of their nodes, and evaluated at the new ones */
 
-static PetscErrorCode AbutOldTraceKeep_Private(AbutOldTrace *old, PetscInt n, const PetscReal x[], const PetscReal value[],
+static PetscErrorCode AbutOldTraceKeep_Private(AbutOldTrace *old, PetscInt n, PetscInt each, const PetscReal x[], const PetscReal value[],
                                                PetscBool backwards)
 {
   PetscFunctionBegin;
   PetscCall(PetscFree2(old->x, old->value));
-  old->n = n;
-  PetscCall(PetscMalloc2(2 * n, &old->x, n, &old->value));
+  old->n    = n;
+  old->each = each;
+  PetscCall(PetscMalloc2(2 * n, &old->x, each * n, &old->value));
   for (PetscInt i = 0; i < n; ++i) {
     const PetscInt from = backwards ? n - 1 - i : i;
 
     old->x[2 * i]     = x[2 * from];
     old->x[2 * i + 1] = x[2 * from + 1];
-    old->value[i]     = value[from];
+    for (PetscInt d = 0; d < each; ++d) old->value[each * i + d] = value[each * from + d];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -41,12 +42,14 @@ PetscErrorCode AbutInterfaceKeepTrace(AbutInterface iface, Vec x)
   PetscCall(AbutInterfaceReplicate_Private(iface, x, full));
   for (PetscInt t = 0; t < 2 * iface->npairs; ++t) {
     AbutBody        bodies[2];
-    PetscInt        sides[2];
+    PetscInt        sides[2], each;
     const AbutSide *side;
 
+    if (iface->bodyof[t] < 0) continue;
     PetscCall(AbutPairGetBodies(iface->pair[t / 2], bodies, sides));
+    PetscCall(AbutPairGetComponents(iface->pair[t / 2], &each));
     PetscCall(AbutBodyGetSide(bodies[t % 2], sides[t % 2], &side));
-    PetscCall(AbutOldTraceKeep_Private(&iface->old[t], side->n, side->x, full + iface->offset[t], PETSC_FALSE));
+    PetscCall(AbutOldTraceKeep_Private(&iface->old[t], side->n, each, side->x, full + iface->offset[t], PETSC_FALSE));
   }
   for (PetscInt i = 0; i < iface->npairs; ++i) { /* the pressures may change sides: always along the first one */
     PetscInt         which, n;
@@ -56,7 +59,7 @@ PetscErrorCode AbutInterfaceKeepTrace(AbutInterface iface, Vec x)
     PetscCall(AbutPairGetPressureNodes(iface->pair[i], &which, &n, &xn, &D));
     PetscCall(PetscMalloc1(n, &unknown));
     for (PetscInt k = 0; k < n; ++k) unknown[k] = iface->p[i][k] - iface->guess[i][k];
-    PetscCall(AbutOldTraceKeep_Private(&iface->oldpressure[i], n, xn, unknown, (PetscBool)which));
+    PetscCall(AbutOldTraceKeep_Private(&iface->oldpressure[i], n, 1, xn, unknown, (PetscBool)which));
     PetscCall(PetscFree(unknown));
   }
   iface->warm = iface->guessed;
@@ -65,7 +68,7 @@ PetscErrorCode AbutInterfaceKeepTrace(AbutInterface iface, Vec x)
 }
 
 /* Both node lists run along the same side in the same direction: one walk serves all nodes */
-static PetscReal AbutOldTraceValue_Private(const AbutOldTrace *old, const PetscReal x[2], PetscInt *element)
+static void AbutOldTraceValue_Private(const AbutOldTrace *old, const PetscReal x[2], PetscInt *element, PetscReal value[])
 {
   PetscReal t;
 
@@ -76,7 +79,8 @@ static PetscReal AbutOldTraceValue_Private(const AbutOldTrace *old, const PetscR
     if (t <= 1. || *element + 2 >= old->n) break;
   }
   t = PetscMin(1., PetscMax(0., t));
-  return (1. - t) * old->value[*element] + t * old->value[*element + 1];
+  for (PetscInt d = 0; d < old->each; ++d)
+    value[d] = (1. - t) * old->value[old->each * *element + d] + t * old->value[old->each * (*element + 1) + d];
 }
 
 /*@
@@ -98,17 +102,18 @@ PetscErrorCode AbutInterfaceTransferTrace(AbutInterface iface, Vec x)
 {
   PetscFunctionBegin;
   for (PetscInt t = 0; t < 2 * iface->npairs; ++t)
-    AbutCheckInput(iface->old[t].n > 1 && iface->oldpressure[t / 2].n > 1, PetscObjectComm((PetscObject)iface),
+    AbutCheckInput(iface->bodyof[t] < 0 || (iface->old[t].n > 1 && iface->oldpressure[t / 2].n > 1), PetscObjectComm((PetscObject)iface),
                    "restart: the checkpoint has no traces to begin with; it was written with scene_cold: give that here, too");
   for (PetscInt t = 0; t < 2 * iface->npairs; ++t) {
     AbutBody        bodies[2];
     PetscInt        sides[2], element = 0;
     const AbutSide *side;
 
+    if (iface->bodyof[t] < 0) continue;
     PetscCall(AbutPairGetBodies(iface->pair[t / 2], bodies, sides));
     PetscCall(AbutBodyGetSide(bodies[t % 2], sides[t % 2], &side));
     for (PetscInt i = 0; i < side->n; ++i)
-      iface->x[iface->offset[t] + i] = AbutOldTraceValue_Private(&iface->old[t], side->x + 2 * i, &element);
+      AbutOldTraceValue_Private(&iface->old[t], side->x + 2 * i, &element, iface->x + iface->offset[t] + iface->old[t].each * i);
   }
   PetscCall(AbutInterfaceLocalize_Private(iface, iface->x, x));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -124,9 +129,10 @@ PetscErrorCode AbutInterfaceTransferPressure_Private(AbutInterface iface)
 
     PetscCall(AbutPairGetPressureNodes(iface->pair[i], &which, &n, &x, &D));
     for (PetscInt k = 0; k < n; ++k) {
-      const PetscInt  node = which ? n - 1 - k : k;
-      const PetscReal p    = AbutOldTraceValue_Private(&iface->oldpressure[i], x + 2 * node, &element);
+      const PetscInt node = which ? n - 1 - k : k;
+      PetscReal      p;
 
+      AbutOldTraceValue_Private(&iface->oldpressure[i], x + 2 * node, &element, &p);
       iface->p[i][node] = D[node] > 0. ? PetscMax(0., iface->guess[i][node] + p) : 0.;
     }
   }
@@ -140,12 +146,15 @@ static PetscErrorCode AbutOldTraceArchive_Private(AbutOldTrace *old, AbutArchive
   PetscFunctionBegin;
   PetscCall(AbutArchiveReads(ar, &reads));
   PetscCall(AbutArchiveCount(ar, "nodes of a side", &old->n));
+  PetscCall(AbutArchiveInts(ar, "values of a node", 1, &old->each));
+  AbutCheckInput(old->n == 0 || old->each == 1 || old->each == 2, PETSC_COMM_WORLD,
+                 "restart: %" PetscInt_FMT " values of a node are not those of a trace", old->each);
   if (reads) {
     PetscCall(PetscFree2(old->x, old->value));
-    PetscCall(PetscMalloc2(2 * old->n, &old->x, old->n, &old->value));
+    PetscCall(PetscMalloc2(2 * old->n, &old->x, old->each * old->n, &old->value));
   }
   PetscCall(AbutArchiveReals(ar, "their places", 2 * old->n, old->x));
-  PetscCall(AbutArchiveReals(ar, "their values", old->n, old->value));
+  PetscCall(AbutArchiveReals(ar, "their values", old->each * old->n, old->value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

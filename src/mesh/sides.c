@@ -154,3 +154,31 @@ PetscErrorCode AbutMeshGetSideEnds(AbutMesh mesh, PetscInt side, PetscReal ends[
   normal[!d]            = 0.;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/*@C
+   AbutMeshGetSidePolygon - The points of a side in the first mesh; the mesh need not be set up
+
+   Not Collective
+
+   Input Parameters:
++  mesh - the mesh
+-  side - number of the side
+
+   Output Parameters:
++  n - how many points; 2 for a side of a box
+-  x - [2*n] the points in order, with the body on the left, owned by the mesh
+
+   Level: developer
+
+.seealso: `AbutMeshGetSideEnds()`
+@*/
+PetscErrorCode AbutMeshGetSidePolygon(AbutMesh mesh, PetscInt side, PetscInt *n, const PetscReal *x[])
+{
+  PetscReal normal[2];
+
+  PetscFunctionBegin;
+  PetscCall(AbutMeshGetSideEnds(mesh, side, mesh->sideends[side], normal));
+  *n = 2;
+  *x = mesh->sideends[side];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

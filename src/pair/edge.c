@@ -2,28 +2,20 @@
 
 /* Where contact begins and ends */
 
-/* Distance of a node of the pressure side from the first one along the (straight) side */
-PetscReal AbutPairPlace_Private(AbutPair pair, PetscInt i)
-{
-  const AbutSide *m = pair->nodes[pair->which];
-
-  return PetscSqrtReal(PetscSqr(m->x[2 * i] - m->x[0]) + PetscSqr(m->x[2 * i + 1] - m->x[1]));
-}
-
 /* The edge beyond the last closed node, from the second to fourth open node on: there gap^(2/3) runs straight into the edge of an exact
    contact. At most an element away from the last closed node, which is itself the answer where there is no such line. */
 static PetscReal AbutPairEdgeOfGap_Private(AbutPair pair, const PetscReal g[], const PetscReal p[], PetscInt in, PetscInt step)
 {
   const AbutSide *m    = pair->nodes[pair->which];
   const PetscInt  end  = PetscMin(PetscMax(in + step * pair->order[0], 0), m->n - 1);
-  const PetscReal last = AbutPairPlace_Private(pair, in), h = PetscAbsReal(AbutPairPlace_Private(pair, end) - last);
+  const PetscReal last = pair->place[0][in], h = PetscAbsReal(pair->place[0][end] - last);
   PetscReal       s[3], y[3], ms = 0., my = 0., sy = 0., ss = 0., edge;
 
   for (PetscInt k = 0; k < 3; ++k) {
     const PetscInt node = in + (k + 2) * step;
 
     if (node < 0 || node >= m->n || pair->D[node] <= 0. || p[node] > 0. || g[node] >= 0.) return last;
-    s[k] = AbutPairPlace_Private(pair, node);
+    s[k] = pair->place[0][node];
     y[k] = PetscPowReal(-g[node], 2. / 3.);
     ms += s[k] / 3.;
     my += y[k] / 3.;
@@ -46,8 +38,8 @@ PetscBool AbutPairEdgeBeyond_Private(AbutPair pair, const PetscReal g[], const P
   const PetscInt  out = in + step;
 
   if (out < 0 || out >= m->n || pair->D[out] <= 0.) return PETSC_FALSE;
-  *at = pair->theta > 0. ? AbutPairPlace_Private(pair, in) : AbutPairEdgeOfGap_Private(pair, g, p, in, step);
-  if (pair->theta > 0. && g[in] > 0. && g[out] < 0.) *at += (AbutPairPlace_Private(pair, out) - *at) * g[in] / (g[in] - g[out]);
+  *at = pair->theta > 0. ? pair->place[0][in] : AbutPairEdgeOfGap_Private(pair, g, p, in, step);
+  if (pair->theta > 0. && g[in] > 0. && g[out] < 0.) *at += (pair->place[0][out] - *at) * g[in] / (g[in] - g[out]);
   return PETSC_TRUE;
 }
 
@@ -58,8 +50,8 @@ PetscBool AbutPairEdgeBeyond_Private(AbutPair pair, const PetscReal g[], const P
 
    Input Parameters:
 +  pair - the pair, set up
-.  u1   - [n1] normal displacements at the nodes of the first side, length
-.  u2   - [n2] the same on the second side
+.  u1   - [components*n1] displacements at the nodes of the first side, length
+.  u2   - [components*n2] the same on the second side
 .  p    - [nodes of the pressure side] the pressures that act, stress
 -  max  - room in x
 
@@ -79,20 +71,18 @@ PetscErrorCode AbutPairGetEdges(AbutPair pair, const PetscReal u1[], const Petsc
                                 PetscReal x[][2])
 {
   const AbutSide *m = pair->nodes[pair->which];
-  PetscReal      *g = pair->work, length, at;
+  PetscReal      *g = pair->work, at;
 
   PetscFunctionBegin;
   PetscCall(AbutPairComputePenetration(pair, u1, u2, g));
-  length = AbutPairPlace_Private(pair, m->n - 1);
-  *n     = 0;
+  *n = 0;
   for (PetscInt i = 0; i < m->n; ++i)
     for (PetscInt step = -1; step <= 1; step += 2) {
       const PetscInt next = i + step;
 
       if (p[i] <= 0. || (next >= 0 && next < m->n && p[next] > 0.) || *n == max) continue; /* open, or inside a run */
       if (!AbutPairEdgeBeyond_Private(pair, g, p, i, step, &at)) continue;
-      for (PetscInt d = 0; d < 2; ++d) x[*n][d] = m->x[d] + at / length * (m->x[2 * (m->n - 1) + d] - m->x[d]);
-      ++*n;
+      AbutPairPointAt_Private(pair, at, x[(*n)++]);
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,105 +1,6 @@
 #include <abut/private/pairimpl.h> /*I "abutpair.h" I*/
 
 /*@C
-   AbutPairGetGap - The gap f at a point of the pressure side
-
-   Not Collective
-
-   Input Parameters:
-+  pair - the pair
--  x    - [2] the point
-
-   Output Parameter:
-.  gap - f, length; without `-NAME_pair_gap` the distance of the sides
-
-   Level: intermediate
-
-.seealso: `AbutPairComputePressure()`
-@*/
-PetscErrorCode AbutPairGetGap(AbutPair pair, const PetscReal x[2], PetscReal *gap)
-{
-  PetscFunctionBegin;
-  if (pair->gap) {
-    PetscCall(AbutExpressionEvaluate(pair->gap, x, gap));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(AbutPairGetDistance_Private(pair, gap));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-#define ABUT_SAMPLES 32
-
-/*@
-   AbutPairCheck - Ends the run if the gap is not a finite number on the first side; needs no meshes yet
-
-   Collective
-
-   Input Parameter:
-.  pair - the pair, its keys read
-
-   Level: developer
-
-   Note:
-   Looks at some points of the side.
-
-.seealso: `AbutPairSetUp()`, `AbutBodyCheck()`
-@*/
-PetscErrorCode AbutPairCheck(AbutPair pair)
-{
-  AbutMesh  mesh;
-  PetscReal ends[4], normal[2], gap;
-
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(pair, ABUTPAIR_CLASSID, 1);
-  PetscCall(AbutBodyGetMesh(pair->body[0], &mesh));
-  PetscCall(AbutMeshGetSideEnds(mesh, pair->side[0], ends, normal));
-  for (PetscInt i = 0; i < ABUT_SAMPLES; ++i) {
-    const PetscReal z = i / (ABUT_SAMPLES - 1.), x[2] = {(1. - z) * ends[0] + z * ends[2], (1. - z) * ends[1] + z * ends[3]};
-
-    PetscCall(AbutPairGetGap(pair, x, &gap));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@C
-   AbutPairGetOverlap - How deep the sides of a pair lie in each other before anything moves
-
-   Not Collective
-
-   Input Parameter:
-.  pair - the pair, set up
-
-   Output Parameters:
-+  depth - the largest of what the gap is below 0 at the nodes that carry pressures, length; 0 where the sides only touch
--  x     - where, not set if they only touch
-
-   Level: intermediate
-
-   Note:
-   Contact pushes the bodies apart by it, which is what a scene with an interference fit wants and most others do not.
-
-.seealso: `AbutPairGetGap()`, `AbutPairComputePenetration()`
-@*/
-PetscErrorCode AbutPairGetOverlap(AbutPair pair, PetscReal *depth, PetscReal x[2])
-{
-  const AbutSide *side = pair->nodes[pair->which];
-  const PetscReal near = 1e-9 * AbutPairPlace_Private(pair, side->n - 1);
-
-  PetscFunctionBegin;
-  *depth = 0.;
-  for (PetscInt i = 0; i < side->n; ++i) {
-    PetscReal gap;
-
-    if (pair->D[i] <= 0.) continue;
-    PetscCall(AbutPairGetGap(pair, side->x + 2 * i, &gap));
-    if (-gap <= PetscMax(near, *depth)) continue;
-    *depth = -gap;
-    PetscCall(PetscArraycpy(x, side->x + 2 * i, 2));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@C
    AbutPairComputePressure - Nodal pressures of the penalty law, p = max(0, u_n1 + u_n2 - f)/theta, for given traces: eqs. (15), (20) of the
    paper
 
@@ -107,8 +8,8 @@ PetscErrorCode AbutPairGetOverlap(AbutPair pair, PetscReal *depth, PetscReal x[2
 
    Input Parameters:
 +  pair - the pair, set up
-.  u1   - [n1] normal displacements at the nodes of the first side, length
--  u2   - [n2] the same on the second side
+.  u1   - [components*n1] displacements at the nodes of the first side, length
+-  u2   - [components*n2] the same on the second side
 
    Output Parameter:
 .  p - [nodes of the pressure side] pressures, stress; 0 at nodes that carry none
@@ -126,7 +27,7 @@ PetscErrorCode AbutPairComputePressure(AbutPair pair, const PetscReal u1[], cons
 }
 
 /*@C
-   AbutPairComputeForce - Nodal normal forces on both sides of nodal pressures, the pressing direction positive
+   AbutPairComputeForce - Nodal forces on both sides of nodal pressures, along the outward normals: against the pressing direction
 
    Not Collective
 
@@ -135,8 +36,8 @@ PetscErrorCode AbutPairComputePressure(AbutPair pair, const PetscReal u1[], cons
 -  p    - [nodes of the pressure side] pressures, stress
 
    Output Parameters:
-+  f1 - [n1] integrals of the pressure against the functions of the first side's nodes, stress times length
--  f2 - [n2] the same on the second side
++  f1 - [components*n1] integrals of the pressure against the functions of the first side's nodes, stress times length
+-  f2 - [components*n2] the same on the second side
 
    Level: intermediate
 
@@ -149,14 +50,49 @@ PetscErrorCode AbutPairComputeForce(AbutPair pair, const PetscReal p[], PetscRea
 
   PetscFunctionBegin;
   for (PetscInt s = 0; s < 2; ++s)
-    for (PetscInt i = 0; i < pair->n[s]; ++i) f[s][i] = 0.;
+    for (PetscInt i = 0; i < pair->components * pair->n[s]; ++i) f[s][i] = 0.;
   for (PetscInt g = 0; g < pair->nsegments; ++g) {
     const AbutSegment *seg = &pair->segment[g];
 
     for (PetscInt i = 0; i <= pair->order[0]; ++i)
       for (PetscInt side = 0; side < 2; ++side)
         for (PetscInt j = 0; j <= pair->order[side]; ++j)
-          force[side][pair->order[side] * seg->element[side] + j] += seg->M[side][i][j] * p[pair->order[0] * seg->element[0] + i];
+          for (PetscInt d = 0; d < pair->components; ++d)
+            force[side][pair->components * (pair->order[side] * seg->element[side] + j) + d] += AbutSegmentNormal_Private(pair, seg, side,
+                                                                                                                          d) *
+                                                                                                seg->M[side][i][j] *
+                                                                                                p[pair->order[0] * seg->element[0] + i];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutPairSetNormalTrace - Makes a trace of displacements along the outward normal of a side
+
+   Not Collective
+
+   Input Parameters:
++  pair - the pair, set up
+.  side - 0 or 1
+-  un   - [nodes of the side] normal displacements, length
+
+   Output Parameter:
+.  trace - [components*nodes of the side] the trace
+
+   Level: developer
+
+.seealso: `AbutPairGetComponents()`, `AbutPairComputeSupport()`
+@*/
+PetscErrorCode AbutPairSetNormalTrace(AbutPair pair, PetscInt side, const PetscReal un[], PetscReal trace[])
+{
+  PetscFunctionBegin;
+  for (PetscInt i = pair->n[side] - 1; i >= 0; --i) { /* backwards: both may be one array */
+    PetscReal normal[2];
+
+    PetscCall(AbutSideGetNodeNormal(pair->nodes[side], i, normal));
+    if (pair->components == 1) trace[i] = un[i];
+    else
+      for (PetscInt d = 1; d >= 0; --d) trace[2 * i + d] = un[i] * normal[d];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -170,8 +106,8 @@ PetscErrorCode AbutPairComputeForce(AbutPair pair, const PetscReal p[], PetscRea
 .  pair - the pair, set up
 
    Output Parameters:
-+  u1 - [n1] normal displacements at the nodes of the first side: what is prescribed on the side opposite to it, 0 if nothing is; length
--  u2 - [n2] the same on the second side
++  u1 - [components*n1] displacements at the nodes of the first side: what is prescribed on the side opposite to it, 0 if nothing is; length
+-  u2 - [components*n2] the same on the second side
 
    Level: developer
 
@@ -183,9 +119,26 @@ PetscErrorCode AbutPairComputeSupport(AbutPair pair, PetscReal u1[], PetscReal u
   PetscBool        found;
 
   PetscFunctionBegin;
-  for (PetscInt s = 0; s < 2; ++s)
+  for (PetscInt s = 0; s < 2 && pair->body[s]; ++s) {
+    PetscReal *un;
+
+    PetscCall(PetscMalloc1(pair->n[s], &un));
     for (PetscInt i = 0; i < pair->n[s]; ++i)
-      PetscCall(AbutBodyGetSupportDisplacement(pair->body[s], pair->nodes[s]->x + 2 * i, pair->nodes[s]->normal, &u[s][i], &found));
+      PetscCall(AbutBodyGetSupportDisplacement(pair->body[s], pair->nodes[s]->x + 2 * i, pair->nodes[s]->normal, &un[i], &found));
+    PetscCall(AbutPairSetNormalTrace(pair, s, un, u[s]));
+    PetscCall(PetscFree(un));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How far the bodies would come together at a point if they followed their supports; found: both have one */
+static PetscErrorCode AbutPairApproach_Private(AbutPair pair, const PetscReal x[2], PetscReal base[2], PetscBool *found)
+{
+  PetscFunctionBegin;
+  base[1] = 0.;
+  *found  = PETSC_TRUE;
+  for (PetscInt b = 0; b < 2 && pair->body[b] && *found; ++b)
+    PetscCall(AbutBodyGetSupportDisplacement(pair->body[b], x, pair->nodes[b]->normal, &base[b], found));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -200,7 +153,8 @@ PetscErrorCode AbutPairComputeSupport(AbutPair pair, PetscReal u1[], PetscReal u
    Output Parameters:
 +  u1    - [n1] normal displacements at the nodes of the first side, length
 .  u2    - [n2] the same on the second side
--  found - `PETSC_FALSE` where a body has no support with prescribed displacement opposite to its side; u1, u2 are then not set
+-  found - `PETSC_FALSE` where a body has no support with prescribed displacement opposite to its side, or the sides are curved; u1, u2 are
+           then not set
 
    Level: intermediate
 
@@ -212,16 +166,15 @@ PetscErrorCode AbutPairComputeWinkler(AbutPair pair, PetscReal u1[], PetscReal u
   PetscReal        compliance[2];
 
   PetscFunctionBegin;
+  *found = (PetscBool)(pair->components == 1 && !pair->obstacle);
   PetscCall(AbutPairGetCompliance(pair, compliance));
-  for (PetscInt s = 0; s < 2; ++s)
+  for (PetscInt s = 0; s < 2 && *found; ++s)
     for (PetscInt i = 0; i < pair->n[s]; ++i) {
       const PetscReal *x = pair->nodes[s]->x + 2 * i;
       PetscReal        base[2], f, p;
 
-      for (PetscInt b = 0; b < 2; ++b) {
-        PetscCall(AbutBodyGetSupportDisplacement(pair->body[b], x, pair->nodes[b]->normal, &base[b], found));
-        if (!*found) PetscFunctionReturn(PETSC_SUCCESS);
-      }
+      PetscCall(AbutPairApproach_Private(pair, x, base, found));
+      if (!*found) break;
       PetscCall(AbutPairGetGap(pair, x, &f));
       p       = PetscMax(0., base[0] + base[1] - f) / (pair->theta + compliance[0] + compliance[1]);
       u[s][i] = base[s] - p * compliance[s];

@@ -4,25 +4,6 @@
 /* Dual-mortar weights on the common refinement of the two sides. One-sided quadrature would fail the contact patch test by some per
    cent. */
 
-/* Coordinate of every node along the straight pressure side, 0 at its first node */
-static PetscErrorCode AbutPairProject_Private(AbutPair pair, PetscReal *s[2], PetscReal tangent[2])
-{
-  const AbutSide *m = pair->nodes[pair->which];
-  PetscReal       length;
-
-  PetscFunctionBegin;
-  for (PetscInt d = 0; d < 2; ++d) tangent[d] = m->x[2 * (m->n - 1) + d] - m->x[d];
-  length = PetscSqrtReal(tangent[0] * tangent[0] + tangent[1] * tangent[1]);
-  for (PetscInt d = 0; d < 2; ++d) tangent[d] /= length;
-  for (PetscInt k = 0; k < 2; ++k) {
-    const AbutSide *side = pair->nodes[k ? !pair->which : pair->which];
-
-    PetscCall(PetscMalloc1(side->n, &s[k]));
-    for (PetscInt i = 0; i < side->n; ++i) s[k][i] = (side->x[2 * i] - m->x[0]) * tangent[0] + (side->x[2 * i + 1] - m->x[1]) * tangent[1];
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 #define ABUT_STIFFER 1.5
 
 /* The side with more elements on the common part carries the pressures, of equally many that of the lower order, then the first; but never
@@ -35,7 +16,8 @@ static PetscErrorCode AbutPairChoosePressureSide_Private(AbutPair pair)
 
   PetscFunctionBegin;
   pair->which = pair->pressureside == ABUT_PRESSURE_SECOND;
-  if (pair->pressureside != ABUT_PRESSURE_FINER) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!pair->body[1]) pair->which = 0;
+  if (!pair->body[1] || pair->pressureside != ABUT_PRESSURE_FINER) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; k < 2; ++k) {
     const AbutSide *own = pair->nodes[k], *other = pair->nodes[!k];
     PetscReal       box[4] = {PETSC_MAX_REAL, PETSC_MAX_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL};
@@ -94,20 +76,12 @@ static PetscErrorCode AbutPairDual_Private(PetscInt order, AbutDual A)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where the two sides lie, and what is known of the other side's elements while one walks along the pressure side */
-typedef struct {
-  PetscReal *s[2], tangent[2]; /* places of the nodes along the pressure side, which runs against the other one */
-  PetscInt   n[2], k;          /* elements; that of the other side met last */
-} AbutWalk;
-
 /* Integrals over one piece [from,to] of the elements e of the pressure side and k of the other */
-static PetscErrorCode AbutPairSegment_Private(AbutPair pair, const AbutWalk *walk, PetscInt e, PetscInt k, AbutDual A, PetscReal from,
-                                              PetscReal to)
+static PetscErrorCode AbutPairSegment_Private(AbutPair pair, PetscInt e, PetscInt k, AbutDual A, PetscReal from, PetscReal to)
 {
-  const PetscInt   n = pair->order[0] + pair->order[1] + 2, first = pair->order[0] * e, node[2] = {first, pair->order[1] * k};
-  const PetscReal *x0 = pair->nodes[pair->which]->x;
-  PetscReal        z[2 * ABUT_ORDER_MAX + 2], w[2 * ABUT_ORDER_MAX + 2], phi[2][ABUT_SIDE_NODES_MAX];
-  AbutSegment     *g;
+  const PetscInt n = pair->order[0] + PetscMax(pair->order[1], 0) + 2, first = pair->order[0] * e;
+  PetscReal      z[2 * ABUT_ORDER_MAX + 2], w[2 * ABUT_ORDER_MAX + 2], phi[2][ABUT_SIDE_NODES_MAX], at[2], f;
+  AbutSegment   *g;
 
   PetscFunctionBegin;
   if (pair->nsegments == pair->room) {
@@ -120,15 +94,9 @@ static PetscErrorCode AbutPairSegment_Private(AbutPair pair, const AbutWalk *wal
   g->element[1] = k;
   PetscCall(PetscDTGaussQuadrature(n, from, to, z, w));
   for (PetscInt q = 0; q < n; ++q) {
-    const PetscReal x[2] = {x0[0] + z[q] * walk->tangent[0], x0[1] + z[q] * walk->tangent[1]};
-    PetscReal       f;
-
-    for (PetscInt side = 0; side < 2; ++side) {
-      const PetscReal a = walk->s[side][node[side]], b = walk->s[side][node[side] + pair->order[side]];
-
-      PetscCall(AbutEvaluateLobatto(pair->order[side], (2. * z[q] - a - b) / (b - a), phi[side], NULL));
-    }
-    PetscCall(AbutPairGetGap(pair, x, &f));
+    PetscCall(AbutPairFace_Private(pair, g->element, z[q], at, g->normal, &f));
+    for (PetscInt side = 0; side < 2 && pair->order[side] > 0; ++side)
+      PetscCall(AbutEvaluateLobatto(pair->order[side], at[side], phi[side], NULL));
     for (PetscInt i = 0; i <= pair->order[0]; ++i) {
       PetscReal psi = 0.;
 
@@ -139,32 +107,37 @@ static PetscErrorCode AbutPairSegment_Private(AbutPair pair, const AbutWalk *wal
         for (PetscInt j = 0; j <= pair->order[side]; ++j) g->M[side][i][j] += psi * phi[side][j];
     }
   }
+  PetscCall(AbutPairFace_Private(pair, g->element, 0.5 * (from + to), at, g->normal, &f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The pieces of [from,to], in element e of the pressure side. Elements of the other side are met from its end: element j covers
-   [s[1][p j + p], s[1][p j]], p its order. */
-static PetscErrorCode AbutPairPieces_Private(AbutPair pair, AbutWalk *walk, PetscInt e, AbutDual A, PetscReal from, PetscReal to)
+   [s[p j + p], s[p j]], p its order; k is the one met last. */
+static PetscErrorCode AbutPairPieces_Private(AbutPair pair, PetscInt *k, PetscInt e, AbutDual A, PetscReal from, PetscReal to)
 {
-  const PetscReal *own = walk->s[0] + pair->order[0] * e, *s = walk->s[1], tiny = 1e-12 * (own[pair->order[0]] - own[0]);
+  const PetscReal *own = pair->place[0] + pair->order[0] * e, *s = pair->place[1], tiny = 1e-12 * (own[pair->order[0]] - own[0]);
   const PetscInt   p = pair->order[1];
 
   PetscFunctionBegin;
-  while (walk->k > 0 && s[p * walk->k] <= from + tiny) --walk->k;
-  for (PetscInt j = walk->k; j >= 0 && s[p * (j + 1)] < to; --j) {
+  if (p < 0) {
+    PetscCall(AbutPairSegment_Private(pair, e, 0, A, from, to));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  while (*k > 0 && s[p * *k] <= from + tiny) --*k;
+  for (PetscInt j = *k; j >= 0 && s[p * (j + 1)] < to; --j) {
     const PetscReal a = PetscMax(from, s[p * (j + 1)]), b = PetscMin(to, s[p * j]);
 
-    if (b - a > tiny) PetscCall(AbutPairSegment_Private(pair, walk, e, j, A, a, b));
+    if (b - a > tiny) PetscCall(AbutPairSegment_Private(pair, e, j, A, a, b));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* An element of higher order that the other side covers in part, or with nodes that carry no pressure: dual functions need not be
    positive there, so each of the nodes on the overlap that carry takes what is nearest to it, a constant; if none does, the nearest. */
-static PetscErrorCode AbutPairNearest_Private(AbutPair pair, AbutWalk *walk, PetscInt e, PetscReal from, PetscReal to)
+static PetscErrorCode AbutPairNearest_Private(AbutPair pair, PetscInt *k, PetscInt e, PetscReal from, PetscReal to)
 {
   const PetscInt   p     = pair->order[0];
-  const PetscReal *s     = walk->s[0] + p * e;
+  const PetscReal *s     = pair->place[0] + p * e;
   const PetscBool *fixed = pair->nodes[pair->which]->fixed + p * e;
   PetscInt         node[ABUT_SIDE_NODES_MAX], n = 0, nearest = -1;
 
@@ -179,17 +152,17 @@ static PetscErrorCode AbutPairNearest_Private(AbutPair pair, AbutWalk *walk, Pet
     AbutDual A = {{0.}};
 
     for (PetscInt j = 0; j <= p; ++j) A[node[i]][j] = 1.;
-    PetscCall(AbutPairPieces_Private(pair, walk, e, A, i ? 0.5 * (s[node[i - 1]] + s[node[i]]) : from,
+    PetscCall(AbutPairPieces_Private(pair, k, e, A, i ? 0.5 * (s[node[i - 1]] + s[node[i]]) : from,
                                      i + 1 < n ? 0.5 * (s[node[i]] + s[node[i + 1]]) : to));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Element e of the pressure side, of which [from,to] lies against the other one */
-static PetscErrorCode AbutPairElement_Private(AbutPair pair, AbutWalk *walk, PetscInt e, PetscReal from, PetscReal to)
+static PetscErrorCode AbutPairElement_Private(AbutPair pair, PetscInt *k, PetscInt e, PetscReal from, PetscReal to)
 {
   const PetscInt   p = pair->order[0];
-  const PetscReal *s = walk->s[0] + p * e, h = s[p] - s[0];
+  const PetscReal *s = pair->place[0] + p * e, h = s[p] - s[0];
   const PetscBool *fixed = pair->nodes[pair->which]->fixed + p * e;
   PetscBool        whole = (PetscBool)(to - from > h * (1. - 1e-9));
   AbutDual         A     = {{0.}};
@@ -207,43 +180,43 @@ static PetscErrorCode AbutPairElement_Private(AbutPair pair, AbutWalk *walk, Pet
     AbutPairDualLinear_Private(hats, carries, A);
   } else if (whole) PetscCall(AbutPairDual_Private(p, A));
   else {
-    PetscCall(AbutPairNearest_Private(pair, walk, e, from, to));
+    PetscCall(AbutPairNearest_Private(pair, k, e, from, to));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(AbutPairPieces_Private(pair, walk, e, A, from, to));
+  PetscCall(AbutPairPieces_Private(pair, k, e, A, from, to));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode AbutPairMortar_Private(AbutPair pair)
 {
-  const AbutSide *side[2];
-  AbutWalk        walk;
+  const AbutSide *own, *other;
+  PetscInt        k;
 
   PetscFunctionBegin;
   PetscCall(AbutPairChoosePressureSide_Private(pair));
-  for (PetscInt k = 0; k < 2; ++k) {
-    side[k]        = pair->nodes[k ? !pair->which : pair->which];
-    pair->order[k] = side[k]->order;
-    walk.n[k]      = (side[k]->n - 1) / side[k]->order;
-  }
-  walk.k = walk.n[1] - 1;
-  PetscCall(AbutPairProject_Private(pair, walk.s, walk.tangent));
-  PetscCall(PetscCalloc3(side[0]->n, &pair->D, side[0]->n, &pair->F, side[0]->n, &pair->work));
-  pair->overlap[0] = PetscMax(walk.s[1][side[1]->n - 1], 0.);
-  pair->overlap[1] = PetscMin(walk.s[1][0], walk.s[0][side[0]->n - 1]);
-  for (PetscInt e = 0; e < walk.n[0]; ++e) {
-    const PetscReal *s = walk.s[0] + pair->order[0] * e, *end = s + pair->order[0], from = PetscMax(*s, pair->overlap[0]),
+  own            = pair->nodes[pair->which];
+  other          = pair->body[1] ? pair->nodes[!pair->which] : NULL;
+  pair->order[0] = own->order;
+  pair->order[1] = other ? other->order : -1;
+  PetscCall(AbutPairProject_Private(pair));
+  pair->components = pair->straight ? 1 : 2;
+  PetscCall(PetscCalloc3(own->n, &pair->D, own->n, &pair->F, own->n, &pair->work));
+  pair->overlap[0] = other ? PetscMax(pair->place[1][other->n - 1], 0.) : 0.;
+  pair->overlap[1] = other ? PetscMin(pair->place[1][0], pair->place[0][own->n - 1]) : pair->place[0][own->n - 1];
+  k                = other ? (other->n - 1) / other->order - 1 : 0;
+  for (PetscInt e = 0; e < (own->n - 1) / own->order; ++e) {
+    const PetscReal *s = pair->place[0] + own->order * e, *end = s + own->order, from = PetscMax(*s, pair->overlap[0]),
                     to = PetscMin(*end, pair->overlap[1]);
 
-    if (to - from >= 1e-9 * (*end - *s)) PetscCall(AbutPairElement_Private(pair, &walk, e, from, to));
+    if (to - from >= 1e-9 * (*end - *s)) PetscCall(AbutPairElement_Private(pair, &k, e, from, to));
   }
-  for (PetscInt i = 0; i < 2; ++i) PetscCall(PetscFree(walk.s[i]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode AbutPairMortarReset_Private(AbutPair pair)
 {
   PetscFunctionBegin;
+  PetscCall(AbutPairProjectReset_Private(pair));
   PetscCall(PetscFree(pair->segment));
   PetscCall(PetscFree3(pair->D, pair->F, pair->work));
   pair->nsegments = pair->room = 0;
@@ -257,8 +230,8 @@ PetscErrorCode AbutPairMortarReset_Private(AbutPair pair)
 
    Input Parameters:
 +  pair - the pair, set up
-.  u1   - [n1] normal displacements at the nodes of the first side, length
--  u2   - [n2] the same on the second side
+.  u1   - [components*n1] displacements at the nodes of the first side, length
+-  u2   - [components*n2] the same on the second side
 
    Output Parameter:
 .  g - [nodes of the pressure side] penetrations, length; 0 at nodes that carry no pressure
@@ -280,7 +253,9 @@ PetscErrorCode AbutPairComputePenetration(AbutPair pair, const PetscReal u1[], c
     for (PetscInt i = 0; i <= pair->order[0]; ++i)
       for (PetscInt side = 0; side < 2; ++side)
         for (PetscInt j = 0; j <= pair->order[side]; ++j)
-          g[pair->order[0] * seg->element[0] + i] += seg->M[side][i][j] * trace[side][pair->order[side] * seg->element[side] + j];
+          for (PetscInt d = 0; d < pair->components; ++d)
+            g[pair->order[0] * seg->element[0] + i] += seg->M[side][i][j] * AbutSegmentNormal_Private(pair, seg, side, d) *
+                                                       trace[side][pair->components * (pair->order[side] * seg->element[side] + j) + d];
   }
   for (PetscInt i = 0; i < n; ++i) g[i] = pair->D[i] > 0. ? g[i] / pair->D[i] : 0.;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -17,9 +17,11 @@ static const char *const AbutPressureSideNames[] = {"first", "second", "finer", 
 .  pair - the pair
 
    Options Database Keys:
-+  -NAME_pair_bodies <first,second> - names of the two bodies; E and H of the first give theta
-.  -NAME_pair_sides <first,second>  - their sides
++  -NAME_pair_bodies <first,second> - names of the two bodies; E and H of the first give theta. One name: the other one is rigid
+.  -NAME_pair_sides <first,second>  - their sides, or the side of the one body
 .  -NAME_pair_gap <f>               - gap as number, formula in x and y, or CSV file, length; default: the distance of the sides
+.  -NAME_pair_obstacle <d>          - with one body: distance from a rigid obstacle at a point, positive where the body may be, formula in x and
+                                      y, length: y for the plane y = 0, sqrt(x^2+(y-8)^2)-8 for a disc
 .  -NAME_pair_penalty <c>           - theta = c H/E, default 0.05; 0 for exact contact
 .  -NAME_pair_theta <theta>         - theta itself, length/stress
 .  -NAME_pair_height <H>            - H, where it is not the extent of the first body along the normal, length
@@ -29,8 +31,9 @@ static const char *const AbutPressureSideNames[] = {"first", "second", "finer", 
    Level: intermediate
 
    Note:
-   Limits: straight sides, frictionless, small displacements (the pairing of the sides is fixed). Exact contact, theta = 0, needs
-   `SNESDDACTIVE`.
+   Limits: frictionless, small displacements (the pairing of the sides is fixed). Exact contact, theta = 0, needs `SNESDDACTIVE`. Curved
+   sides are polygons, whose points look for each other along the mean of the normals at their vertices: a contact side should have no
+   corners. An obstacle neither moves nor gives way.
 
 .seealso: `AbutPairSetFromOptions()`, `AbutPairSetUp()`, `AbutPairDestroy()`
 @*/
@@ -72,12 +75,17 @@ static PetscErrorCode AbutPairFindBodies_Private(AbutPair pair, const char text[
   PetscBool match;
 
   PetscFunctionBegin;
-  PetscCall(AbutPairSplit_Private(pair, "bodies", text, names[0], names[1], sizeof(names[0])));
+  if (strchr(text, ',')) PetscCall(AbutPairSplit_Private(pair, "bodies", text, names[0], names[1], sizeof(names[0])));
+  else {
+    PetscCall(PetscStrncpy(names[0], text, sizeof(names[0])));
+    names[1][0] = 0;
+  }
   for (PetscInt i = 0; i < nbodies; ++i) {
     PetscCall(PetscStrlcat(all, i ? ", " : "", sizeof(all)));
     PetscCall(PetscStrlcat(all, ((PetscObject)bodies[i])->name, sizeof(all)));
   }
-  for (PetscInt s = 0; s < 2; ++s) {
+  pair->body[1] = NULL;
+  for (PetscInt s = 0; s < 2 && names[s][0]; ++s) {
     pair->body[s] = NULL;
     for (PetscInt i = 0; i < nbodies; ++i) {
       PetscCall(PetscStrcasecmp(names[s], ((PetscObject)bodies[i])->name, &match));
@@ -149,9 +157,14 @@ PetscErrorCode AbutPairSetFromOptions(AbutPair pair, PetscInt nbodies, AbutBody 
   AbutCheckInput(!heightset || pair->height > 0., comm, "%s_pair_height: %g is not a length; give a positive number", name,
                  (double)pair->height);
   PetscCall(AbutPairFindBodies_Private(pair, text[0], nbodies, bodies));
-  PetscCall(AbutPairSplit_Private(pair, "sides", text[1], names[0], names[1], sizeof(names[0])));
+  if (pair->body[1]) PetscCall(AbutPairSplit_Private(pair, "sides", text[1], names[0], names[1], sizeof(names[0])));
+  else {
+    AbutCheckInput(!strchr(text[1], ','), comm,
+                   "%s_pair_bodies: \"%s\" is one body, and \"%s\" are two sides; give two bodies, or one side", name, text[0], text[1]);
+    PetscCall(PetscStrncpy(names[0], text[1], sizeof(names[0])));
+  }
   PetscCall(PetscSNPrintf(key, sizeof(key), "%s_pair_sides", name));
-  for (PetscInt s = 0; s < 2; ++s) {
+  for (PetscInt s = 0; s < 2 && pair->body[s]; ++s) {
     AbutMesh mesh;
 
     PetscCall(AbutBodyGetMesh(pair->body[s], &mesh));
@@ -160,6 +173,7 @@ PetscErrorCode AbutPairSetFromOptions(AbutPair pair, PetscInt nbodies, AbutBody 
   }
   PetscCall(PetscSNPrintf(key, sizeof(key), "%s_pair_gap", name));
   if (set[2]) PetscCall(AbutExpressionCreate(comm, key, text[2], &pair->gap));
+  PetscCall(AbutPairObstacleFromOptions_Private(pair));
   PetscCall(AbutPairCheckFacing_Private(pair));
   PetscCall(AbutPairSetTheta_Private(pair));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -184,7 +198,7 @@ PetscErrorCode AbutPairSetUp(AbutPair pair)
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(pair, ABUTPAIR_CLASSID, 1);
-  for (PetscInt s = 0; s < 2; ++s) {
+  for (PetscInt s = 0; s < 2 && pair->body[s]; ++s) {
     AbutMesh mesh;
 
     PetscCall(AbutBodySetUp(pair->body[s]));
@@ -194,7 +208,7 @@ PetscErrorCode AbutPairSetUp(AbutPair pair)
   }
   if (same) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(AbutPairMortarReset_Private(pair));
-  for (PetscInt s = 0; s < 2; ++s) {
+  for (PetscInt s = 0; s < 2 && pair->body[s]; ++s) {
     pair->generation[s] = generation[s];
     PetscCall(AbutBodyGetSide(pair->body[s], pair->side[s], &pair->nodes[s]));
     pair->n[s] = pair->nodes[s]->n;
@@ -218,19 +232,20 @@ PetscErrorCode AbutPairSetUp(AbutPair pair)
 @*/
 PetscErrorCode AbutPairView(AbutPair pair, PetscViewer viewer)
 {
-  const char *gap = "the distance of the sides", *body[2], *side[2];
+  const char *gap = "the distance of the sides", *body[2] = {"", ""}, *side[2] = {"", ""};
 
   PetscFunctionBegin;
   if (pair->gap) PetscCall(AbutExpressionGetText(pair->gap, &gap));
-  for (PetscInt s = 0; s < 2; ++s) {
+  for (PetscInt s = 0; s < 2 && pair->body[s]; ++s) {
     AbutMesh mesh;
 
     PetscCall(AbutBodyGetName(pair->body[s], &body[s]));
     PetscCall(AbutBodyGetMesh(pair->body[s], &mesh));
     PetscCall(AbutMeshGetSideName(mesh, pair->side[s], &side[s]));
   }
-  PetscCall(PetscViewerASCIIPrintf(viewer, "pair %s: %s of %s on %s of %s, gap %s, theta %g\n", ((PetscObject)pair)->name, side[0], body[0],
-                                   side[1], body[1], gap, (double)pair->theta));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "pair %s: %s of %s on %s%s%s, gap %s, theta %g\n", ((PetscObject)pair)->name, side[0], body[0],
+                                   pair->body[1] ? side[1] : "a rigid obstacle", pair->body[1] ? " of " : "", body[1], gap,
+                                   (double)pair->theta));
   if (pair->segment) {
     PetscCall(PetscViewerASCIIPushTab(viewer));
     PetscCall(PetscViewerASCIIPrintf(viewer,
@@ -265,6 +280,7 @@ PetscErrorCode AbutPairDestroy(AbutPair *pair)
   }
   PetscCall(AbutPairMortarReset_Private(*pair));
   PetscCall(AbutExpressionDestroy(&(*pair)->gap));
+  PetscCall(AbutExpressionDestroy(&(*pair)->obstacle));
   PetscCall(PetscHeaderDestroy(pair));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -325,7 +341,7 @@ PetscErrorCode AbutPairGetName(AbutPair pair, const char *name[])
 .  pair - the pair
 
    Output Parameters:
-+  bodies - [2] the bodies
++  bodies - [2] the bodies; the second one is `NULL` for a rigid obstacle
 -  sides  - [2] the numbers of their sides
 
    Level: intermediate
@@ -351,7 +367,7 @@ PetscErrorCode AbutPairGetBodies(AbutPair pair, AbutBody bodies[2], PetscInt sid
 .  pair - the pair, set up
 
    Output Parameter:
-.  n - [2] nodes
+.  n - [2] nodes; 0 for a rigid obstacle
 
    Level: intermediate
 
@@ -362,6 +378,28 @@ PetscErrorCode AbutPairGetSizes(AbutPair pair, PetscInt n[2])
   PetscFunctionBegin;
   n[0] = pair->n[0];
   n[1] = pair->n[1];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutPairGetComponents - How many values a trace has at a node
+
+   Not Collective
+
+   Input Parameter:
+.  pair - the pair, set up
+
+   Output Parameter:
+.  n - 1 for straight sides, the displacement along the outward normal; 2 for curved ones, both components
+
+   Level: intermediate
+
+.seealso: `AbutPairGetSizes()`, `AbutBodyGetSideTrace()`
+@*/
+PetscErrorCode AbutPairGetComponents(AbutPair pair, PetscInt *n)
+{
+  PetscFunctionBegin;
+  *n = pair->components;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -396,7 +434,7 @@ PetscErrorCode AbutPairGetTheta(AbutPair pair, PetscReal *theta)
 .  pair - the pair
 
    Output Parameter:
-.  compliance - [2] length/stress
+.  compliance - [2] length/stress; 0 for a rigid obstacle
 
    Level: intermediate
 
@@ -408,7 +446,8 @@ PetscErrorCode AbutPairGetTheta(AbutPair pair, PetscReal *theta)
 PetscErrorCode AbutPairGetCompliance(AbutPair pair, PetscReal compliance[2])
 {
   PetscFunctionBegin;
-  for (PetscInt s = 0; s < 2; ++s) {
+  compliance[1] = 0.;
+  for (PetscInt s = 0; s < 2 && pair->body[s]; ++s) {
     AbutMesh  mesh;
     PetscReal ends[4], normal[2], height, young, poisson;
 

@@ -18,9 +18,9 @@ static PetscReal AbutPairCurve_Private(AbutPair pair, const PetscReal q[], Petsc
   PetscReal x[3];
 
   if (third < 0 || third >= pair->n[pair->which]) return 0.;
-  x[0] = AbutPairPlace_Private(pair, e);
-  x[1] = AbutPairPlace_Private(pair, e + 1);
-  x[2] = AbutPairPlace_Private(pair, third);
+  x[0] = pair->place[0][e];
+  x[1] = pair->place[0][e + 1];
+  x[2] = pair->place[0][third];
   return 0.25 * (x[1] - x[0]) * PetscAbsReal((q[third] - q[e]) * (x[1] - x[0]) - (q[e + 1] - q[e]) * (x[2] - x[0])) /
          PetscAbsReal((x[2] - x[0]) * (x[2] - x[1]));
 }
@@ -101,15 +101,12 @@ PetscErrorCode AbutPairGetLargest_Private(AbutPair pair, const PetscReal q[], Pe
    this one presses with its own, and the pressure is unbounded. */
 static PetscBool AbutPairAtCorner_Private(AbutPair pair, PetscReal from, PetscReal to)
 {
-  const AbutSide *m = pair->nodes[pair->which], *o = pair->nodes[1 - pair->which];
-  const PetscReal length = AbutPairPlace_Private(pair, m->n - 1), near = 1e-9 * length;
+  const PetscReal length = pair->place[0][pair->n[pair->which] - 1], near = 1e-9 * length, *other = pair->place[1];
   PetscReal       end[2];
 
-  for (PetscInt k = 0; k < 2; ++k) {
-    const PetscReal *x = o->x + (k ? 2 * (o->n - 1) : 0), *a = m->x, *b = m->x + 2 * (m->n - 1);
-
-    end[k] = ((x[0] - a[0]) * (b[0] - a[0]) + (x[1] - a[1]) * (b[1] - a[1])) / length;
-  }
+  if (!pair->body[1]) return PETSC_FALSE;
+  end[0] = other[0];
+  end[1] = other[pair->n[!pair->which] - 1];
   if (PetscAbsReal(PetscMin(end[0], end[1])) > near && from < pair->overlap[0] + near) return PETSC_TRUE;
   return (PetscBool)(PetscAbsReal(PetscMax(end[0], end[1]) - length) > near && to > pair->overlap[1] - near);
 }
@@ -156,7 +153,7 @@ PetscErrorCode AbutPairGetPeaks(AbutPair pair, const PetscReal p[], PetscReal to
   PetscCall(AbutPairGetLargest_Private(pair, q, &largest));
   enough = (1. - tolerance) * largest;
   for (PetscInt first = 0; largest > 0. && first + order < m->n && *n < max; first += order) {
-    const PetscReal  from = AbutPairPlace_Private(pair, first), to = AbutPairPlace_Private(pair, first + order);
+    const PetscReal  from = pair->place[0][first], to = pair->place[0][first + order];
     const PetscReal *a = m->x + 2 * first, *b = m->x + 2 * (first + order);
     PetscReal        last = 0., top, at;
 

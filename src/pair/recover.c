@@ -14,9 +14,9 @@ typedef struct {
 
 static PetscBool AbutPairCoversElement_Private(AbutPair pair, PetscInt e, PetscReal *h)
 {
-  const PetscReal from = AbutPairPlace_Private(pair, pair->order[0] * e);
+  const PetscReal from = pair->place[0][pair->order[0] * e];
 
-  *h = AbutPairPlace_Private(pair, pair->order[0] * (e + 1)) - from;
+  *h = pair->place[0][pair->order[0] * (e + 1)] - from;
   return (PetscBool)(from > pair->overlap[0] - 1e-9 * *h && from + *h < pair->overlap[1] + 1e-9 * *h);
 }
 

@@ -1,13 +1,52 @@
 #include <abut/private/pairimpl.h> /*I "abutpair.h" I*/
 
-/* The two straight sides of a pair, before there are meshes */
+/* The two sides of a pair before there are meshes: polygons, of two points if they are straight */
 
+/* Two straight sides that are opposite to each other */
 typedef struct {
   PetscReal ends[2][4], normal[2][2]; /* of each side */
   PetscReal at[2][2];                 /* where its ends lie along the first side */
   PetscReal from, to;                 /* the part they share, from > to if there is none */
   PetscReal length;                   /* of the first side */
 } AbutPairSides;
+
+static PetscErrorCode AbutPairGetPolygon_Private(AbutPair pair, PetscInt s, PetscInt *n, const PetscReal *x[])
+{
+  AbutMesh mesh;
+
+  PetscFunctionBegin;
+  PetscCall(AbutBodyGetMesh(pair->body[s], &mesh));
+  PetscCall(AbutMeshGetSidePolygon(mesh, pair->side[s], n, x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Outward normal of piece i of a polygon, and its length */
+static void AbutPieceNormal_Private(const PetscReal x[], PetscInt i, PetscReal normal[2], PetscReal *length)
+{
+  const PetscReal d[2] = {x[2 * i + 2] - x[2 * i], x[2 * i + 3] - x[2 * i + 1]};
+
+  *length   = PetscSqrtReal(d[0] * d[0] + d[1] * d[1]);
+  normal[0] = d[1] / *length;
+  normal[1] = -d[0] / *length;
+}
+
+/* Is a side straight: are the normals of all its pieces the same? */
+static PetscErrorCode AbutPairSideIsStraight_Private(AbutPair pair, PetscInt s, PetscBool *straight)
+{
+  const PetscReal *x;
+  PetscReal        first[2], normal[2], length;
+  PetscInt         n;
+
+  PetscFunctionBegin;
+  PetscCall(AbutPairGetPolygon_Private(pair, s, &n, &x));
+  AbutPieceNormal_Private(x, 0, first, &length);
+  *straight = PETSC_TRUE;
+  for (PetscInt i = 1; i + 1 < n; ++i) {
+    AbutPieceNormal_Private(x, i, normal, &length);
+    if (PetscAbsReal(normal[0] - first[0]) + PetscAbsReal(normal[1] - first[1]) > 1e-9) *straight = PETSC_FALSE;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 static PetscErrorCode AbutPairGetSides_Private(AbutPair pair, AbutPairSides *f)
 {
@@ -48,8 +87,51 @@ PetscErrorCode AbutPairGetDistance_Private(AbutPair pair, PetscReal *distance)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-   AbutPairGetSharedEnds - The ends of the part that the sides of a pair share; needs no meshes yet
+static PetscErrorCode AbutPairAreStraight_Private(AbutPair pair, PetscBool *straight)
+{
+  PetscBool one[2] = {PETSC_TRUE, PETSC_TRUE};
+
+  PetscFunctionBegin;
+  for (PetscInt s = 0; s < 2 && pair->body[s]; ++s) PetscCall(AbutPairSideIsStraight_Private(pair, s, &one[s]));
+  *straight = (PetscBool)(one[0] && one[1]);
+  if (*straight && pair->body[1]) {
+    AbutPairSides f;
+
+    PetscCall(AbutPairGetSides_Private(pair, &f));
+    if (f.normal[0][0] * f.normal[1][0] + f.normal[0][1] * f.normal[1][1] > -1. + 1e-9) *straight = PETSC_FALSE;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The nearest point of the second side to x, and whether the piece it is on faces the normal: not so where the side has ended */
+static PetscErrorCode AbutPairNearestOther_Private(AbutPair pair, const PetscReal x[2], const PetscReal normal[2], PetscReal foot[2],
+                                                   PetscReal *distance, PetscBool *faces)
+{
+  const PetscReal *p;
+  PetscReal        best = PETSC_MAX_REAL;
+  PetscInt         n;
+
+  PetscFunctionBegin;
+  PetscCall(AbutPairGetPolygon_Private(pair, 1, &n, &p));
+  *faces = PETSC_FALSE;
+  for (PetscInt i = 0; i + 1 < n; ++i) {
+    PetscReal own[2], length, t, at[2], r;
+
+    AbutPieceNormal_Private(p, i, own, &length);
+    t = (-own[1] * (x[0] - p[2 * i]) + own[0] * (x[1] - p[2 * i + 1])) / length;
+    for (PetscInt d = 0; d < 2; ++d) at[d] = p[2 * i + d] + PetscMin(1., PetscMax(0., t)) * (p[2 * i + 2 + d] - p[2 * i + d]);
+    r = PetscSqrtReal(PetscSqr(at[0] - x[0]) + PetscSqr(at[1] - x[1]));
+    if (r >= best) continue;
+    best   = r;
+    *faces = (PetscBool)(own[0] * normal[0] + own[1] * normal[1] < -0.1 && (i > 0 || t >= 0.) && (i + 2 < n || t <= 1.));
+    for (PetscInt d = 0; d < 2; ++d) foot[d] = at[d];
+  }
+  *distance = best;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutPairGetSharedPoints - Points at which the sides of a pair lie against each other; needs no meshes yet
 
    Not Collective
 
@@ -57,46 +139,64 @@ PetscErrorCode AbutPairGetDistance_Private(AbutPair pair, PetscReal *distance)
 .  pair - the pair, its keys read
 
    Output Parameters:
-+  point  - [side][end] the two ends along the first side, each seen from both sides, length
--  normal - [side] outward unit normals
++  n - how many: the two ends of the shared part of straight sides, which say all of rigid motions; otherwise one for each piece of the first
+       side that faces the second
+-  x - [6*n] for each: the point on the first side, that on the second, and the outward normal of the first; free it with `PetscFree()`
 
    Level: developer
 
 .seealso: `AbutPairCheck()`, `AbutInterfaceCheck()`
 @*/
-PetscErrorCode AbutPairGetSharedEnds(AbutPair pair, PetscReal point[2][2][2], PetscReal normal[2][2])
+PetscErrorCode AbutPairGetSharedPoints(AbutPair pair, PetscInt *n, PetscReal *x[])
 {
-  AbutPairSides f;
+  const PetscReal *p;
+  PetscInt         points;
+  PetscBool        straight, faces = PETSC_TRUE;
 
   PetscFunctionBegin;
-  PetscCall(AbutPairGetSides_Private(pair, &f));
-  for (PetscInt s = 0; s < 2; ++s)
-    for (PetscInt e = 0; e < 2; ++e) {
-      const PetscReal z = ((e ? f.to : f.from) - f.at[s][0]) / (f.at[s][1] - f.at[s][0]);
+  PetscCall(AbutPairAreStraight_Private(pair, &straight));
+  PetscCall(AbutPairGetPolygon_Private(pair, 0, &points, &p));
+  PetscCall(PetscCalloc1(6 * PetscMax(2, points), x));
+  *n = 0;
+  if (straight && pair->body[1]) {
+    AbutPairSides f;
 
-      for (PetscInt d = 0; d < 2; ++d) point[s][e][d] = (1. - z) * f.ends[s][d] + z * f.ends[s][2 + d];
+    PetscCall(AbutPairGetSides_Private(pair, &f));
+    for (PetscInt e = 0; e < 2; ++e, ++*n) {
+      for (PetscInt s = 0; s < 2; ++s) {
+        const PetscReal z = ((e ? f.to : f.from) - f.at[s][0]) / (f.at[s][1] - f.at[s][0]);
+
+        for (PetscInt d = 0; d < 2; ++d) (*x)[6 * e + 2 * s + d] = (1. - z) * f.ends[s][d] + z * f.ends[s][2 + d];
+      }
+      PetscCall(PetscArraycpy(*x + 6 * e + 4, f.normal[0], 2));
     }
-  for (PetscInt s = 0; s < 2; ++s)
-    for (PetscInt d = 0; d < 2; ++d) normal[s][d] = f.normal[s][d];
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  for (PetscInt i = 0; i + 1 < points; ++i)
+    for (PetscInt end = 0; end < (straight && points == 2 ? 2 : 1); ++end) {
+      PetscReal *at = *x + 6 * *n, length, distance;
+
+      AbutPieceNormal_Private(p, i, at + 4, &length);
+      for (PetscInt d = 0; d < 2; ++d)
+        at[d] = at[2 + d] = straight && points == 2 ? p[2 * end + d] : 0.5 * (p[2 * i + d] + p[2 * i + 2 + d]);
+      if (pair->body[1]) PetscCall(AbutPairNearestOther_Private(pair, at, at + 4, at + 2, &distance, &faces));
+      if (faces) ++*n;
+    }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The two sides must lie against each other: opposite normals, a common part, and a distance that is small, or none where the gap is
-   given */
-PetscErrorCode AbutPairCheckFacing_Private(AbutPair pair)
+/* Straight sides must have a common part, and a distance that is small, or none where the gap is given */
+static PetscErrorCode AbutPairCheckStraight_Private(AbutPair pair, const char *const body[])
 {
   MPI_Comm      comm = PetscObjectComm((PetscObject)pair);
-  const char   *name = ((PetscObject)pair)->name, *body[2];
+  const char   *name = ((PetscObject)pair)->name;
   PetscReal     distance;
   AbutPairSides f;
 
   PetscFunctionBegin;
-  for (PetscInt s = 0; s < 2; ++s) PetscCall(AbutBodyGetName(pair->body[s], &body[s]));
   PetscCall(AbutPairGetSides_Private(pair, &f));
   distance = AbutPairSidesDistance_Private(&f);
-  AbutCheckInput(f.normal[0][0] * f.normal[1][0] + f.normal[0][1] * f.normal[1][1] < -0.999 && f.to - f.from > 1e-9 * f.length &&
-                   PetscAbsReal(distance) < 0.1 * f.length,
-                 comm,
+  AbutCheckInput(f.to - f.from > 1e-9 * f.length && PetscAbsReal(distance) < 0.1 * f.length, comm,
                  "%s_pair_sides: bodies \"%s\" and \"%s\" share no part of these sides (distance %g); give sides that lie against each "
                  "other, for example bottom,top",
                  name, body[0], body[1], (double)distance);
@@ -104,5 +204,41 @@ PetscErrorCode AbutPairCheckFacing_Private(AbutPair pair)
                  "%s_pair_gap: given, but the sides of \"%s\" and \"%s\" are %g apart; bring the boxes together, or leave the gap out to "
                  "use this distance",
                  name, body[0], body[1], (double)distance);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The two sides must lie against each other: opposite normals somewhere, and near there */
+PetscErrorCode AbutPairCheckFacing_Private(AbutPair pair)
+{
+  const char      *name = ((PetscObject)pair)->name, *body[2];
+  const PetscReal *p;
+  PetscReal       *x, length = 0., nearest = PETSC_MAX_REAL;
+  PetscInt         n, points;
+  PetscBool        straight;
+
+  PetscFunctionBegin;
+  if (!pair->body[1]) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt s = 0; s < 2; ++s) PetscCall(AbutBodyGetName(pair->body[s], &body[s]));
+  PetscCall(AbutPairAreStraight_Private(pair, &straight));
+  if (straight) {
+    PetscCall(AbutPairCheckStraight_Private(pair, body));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(AbutPairGetSharedPoints(pair, &n, &x));
+  for (PetscInt i = 0; i < n; ++i)
+    nearest = PetscMin(nearest, PetscSqrtReal(PetscSqr(x[6 * i] - x[6 * i + 2]) + PetscSqr(x[6 * i + 1] - x[6 * i + 3])));
+  PetscCall(PetscFree(x));
+  PetscCall(AbutPairGetPolygon_Private(pair, 0, &points, &p));
+  for (PetscInt i = 0; i + 1 < points; ++i) {
+    PetscReal normal[2], piece;
+
+    AbutPieceNormal_Private(p, i, normal, &piece);
+    length += piece;
+  }
+  AbutCheckInput(n > 0 && nearest < 0.1 * length, PetscObjectComm((PetscObject)pair),
+                 "%s_pair_sides: bodies \"%s\" and \"%s\" share no part of these sides; give sides that lie against each other, for "
+                 "example "
+                 "bottom,top",
+                 name, body[0], body[1]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

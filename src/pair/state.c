@@ -40,11 +40,36 @@ static PetscReal AbutPairScale_Private(AbutPair pair, const PetscReal u1[], cons
 {
   PetscReal largest = 0., gap = 0.;
 
-  for (PetscInt i = 0; i < pair->n[0]; ++i) largest = PetscMax(largest, PetscAbsReal(u1[i]));
-  for (PetscInt i = 0; i < pair->n[1]; ++i) largest = PetscMax(largest, PetscAbsReal(u2[i]));
+  for (PetscInt i = 0; i < pair->components * pair->n[0]; ++i) largest = PetscMax(largest, PetscAbsReal(u1[i]));
+  for (PetscInt i = 0; i < pair->components * pair->n[1]; ++i) largest = PetscMax(largest, PetscAbsReal(u2[i]));
   for (PetscInt i = 0; i < pair->n[pair->which]; ++i)
     if (pair->D[i] > 0.) gap = PetscMax(gap, PetscAbsReal(pair->F[i] / pair->D[i]));
   return largest > 0. ? largest : gap;
+}
+
+/* What the forces on the two sides leave, over the force; on vectors the normals are outward, and opposite */
+static PetscErrorCode AbutPairBalance_Private(AbutPair pair, const PetscReal p[], AbutPairState *state)
+{
+  const PetscInt m = pair->components;
+  PetscReal     *f[2],
+    sum[2][2] =
+      {
+        {0., 0.},
+        {0., 0.}
+  },
+    left = 0.;
+
+  PetscFunctionBegin;
+  state->balance = 0.;
+  if (!pair->body[1] || state->force <= 0.) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc2(m * pair->n[0], &f[0], m * pair->n[1], &f[1]));
+  PetscCall(AbutPairComputeForce(pair, p, f[0], f[1]));
+  for (PetscInt s = 0; s < 2; ++s)
+    for (PetscInt i = 0; i < m * pair->n[s]; ++i) sum[s][i % m] += f[s][i];
+  PetscCall(PetscFree2(f[0], f[1]));
+  for (PetscInt d = 0; d < m; ++d) left = PetscMax(left, PetscAbsReal(m == 1 ? sum[0][d] - sum[1][d] : sum[0][d] + sum[1][d]));
+  state->balance = left / state->force;
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@C
@@ -54,8 +79,8 @@ static PetscReal AbutPairScale_Private(AbutPair pair, const PetscReal u1[], cons
 
    Input Parameters:
 +  pair - the pair, set up
-.  u1   - [n1] normal displacements at the nodes of the first side, length
-.  u2   - [n2] the same on the second side
+.  u1   - [components*n1] displacements at the nodes of the first side, length
+.  u2   - [components*n2] the same on the second side
 -  p    - [nodes of the pressure side] the pressures that act, stress
 
    Output Parameter:
@@ -71,7 +96,7 @@ static PetscReal AbutPairScale_Private(AbutPair pair, const PetscReal u1[], cons
 @*/
 PetscErrorCode AbutPairGetState(AbutPair pair, const PetscReal u1[], const PetscReal u2[], const PetscReal p[], AbutPairState *state)
 {
-  PetscReal     *g = pair->work, *f[2], sum[2] = {0., 0.}, compliance[2], largest = 0.; /* nodal pressure */
+  PetscReal     *g = pair->work, compliance[2], largest = 0.; /* nodal pressure */
   const PetscInt n = pair->n[pair->which];
 
   PetscFunctionBegin;
@@ -98,11 +123,6 @@ PetscErrorCode AbutPairGetState(AbutPair pair, const PetscReal u1[], const Petsc
     state->excess /= (compliance[0] + compliance[1] + pair->theta) * largest;
   } else if (state->excess > 0.) state->excess /= AbutPairScale_Private(pair, u1, u2); /* overlapping, and no force between them */
   state->contact_edge = AbutPairEdge_Private(pair, g, p);
-  PetscCall(PetscMalloc2(pair->n[0], &f[0], pair->n[1], &f[1]));
-  PetscCall(AbutPairComputeForce(pair, p, f[0], f[1]));
-  for (PetscInt s = 0; s < 2; ++s)
-    for (PetscInt i = 0; i < pair->n[s]; ++i) sum[s] += f[s][i];
-  PetscCall(PetscFree2(f[0], f[1]));
-  state->balance = state->force > 0. ? PetscAbsReal(sum[0] - sum[1]) / state->force : 0.;
+  PetscCall(AbutPairBalance_Private(pair, p, state));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

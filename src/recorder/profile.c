@@ -6,7 +6,8 @@
 typedef struct {
   const char      *name;
   const AbutSide  *side[2];
-  const PetscReal *trace[2]; /* [side[s]->n] u_n */
+  const PetscReal *trace[2]; /* [components*side[s]->n] u_n, or (u1, u2) */
+  PetscInt         components;
   PetscInt         which;    /* the side that carries the pressures */
   const PetscReal *pressure; /* [side[which]->n] */
   const PetscReal *length;   /* [side[which]->n] 0 where a node carries no pressure */
@@ -26,6 +27,16 @@ static double AddArc(const AbutSide *side, PetscInt i, double arc)
   return i ? arc + hypot(x[0] - x[-2], x[1] - x[-1]) : 0.;
 }
 
+static double NormalDisplacement(const PairProfile *p, int s, PetscInt i)
+{
+  const PetscReal *u = p->trace[s] + p->components * i;
+  PetscReal        normal[2];
+
+  if (p->components == 1) return u[0];
+  (void)AbutSideGetNodeNormal(p->side[s], i, normal);
+  return u[0] * normal[0] + u[1] * normal[1];
+}
+
 static void WriteTrace(FILE *f, const PairProfile *p, int s)
 {
   const AbutSide *side = p->side[s];
@@ -35,7 +46,7 @@ static void WriteTrace(FILE *f, const PairProfile *p, int s)
     const double x = side->x[2 * i], y = side->x[2 * i + 1];
 
     arc = AddArc(side, i, arc);
-    fprintf(f, "%s,%d,%.10g,%.10g,%.10g,%.10g,,\n", p->name, s + 1, arc, x, y, (double)p->trace[s][i]);
+    fprintf(f, "%s,%d,%.10g,%.10g,%.10g,%.10g,,\n", p->name, s + 1, arc, x, y, NormalDisplacement(p, s, i));
   }
 }
 
@@ -59,7 +70,7 @@ static void WriteProfile(FILE *f, const void *ctx)
 
   fprintf(f, "pair,side,s,x,y,u_n,gap,pressure\n");
   for (PetscInt i = 0; i < p->n; ++i) {
-    for (int s = 0; s < 2; ++s) WriteTrace(f, &p->pair[i], s);
+    for (int s = 0; s < 2 && p->pair[i].side[s]; ++s) WriteTrace(f, &p->pair[i], s);
     WritePressure(f, &p->pair[i]);
   }
 }
@@ -73,14 +84,16 @@ static PetscErrorCode AbutRecorderCollectPair_Private(AbutInterface iface, Petsc
   PetscFunctionBegin;
   PetscCall(AbutPairGetName(pair, &p->name));
   PetscCall(AbutPairGetBodies(pair, body, number));
-  for (PetscInt s = 0; s < 2; ++s) {
+  PetscCall(AbutPairGetComponents(pair, &p->components));
+  p->side[1] = NULL;
+  for (PetscInt s = 0; s < 2 && body[s]; ++s) {
     PetscCall(AbutBodyGetSide(body[s], number[s], &p->side[s]));
     PetscCall(AbutInterfaceGetTrace(iface, i, s, &p->trace[s]));
   }
   PetscCall(AbutInterfaceGetPressure(iface, i, &p->pressure));
   PetscCall(AbutPairGetPressureNodes(pair, &p->which, &n, &x, &p->length));
   PetscCall(PetscMalloc1(n, &p->gap));
-  for (PetscInt k = 0; k < n; ++k) PetscCall(AbutPairGetGap(pair, &x[2 * k], &p->gap[k]));
+  for (PetscInt k = 0; k < n; ++k) PetscCall(AbutPairGetNodeGap(pair, k, &p->gap[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -247,7 +247,7 @@ START_TEST(nodal_side_forces_act_as_the_traction_they_stand_for)
     CkOk(AbutBodyCreateVec(body, &f));
     CkOk(PetscCalloc2(PetscMax(top->n, base->n), &force, PetscMax(top->n, base->n), &trace));
     for (PetscInt i = 0; i < base->n; ++i) force[i] = 2.;
-    CkOk(AbutBodyAddSideForce(body, 2, force, f)); /* straight into the support */
+    CkOk(AbutBodyAddSideForce(body, 2, 1, force, f)); /* straight into the support */
     for (PetscInt i = 0; i < top->n; ++i) force[i] = more;
     for (PetscInt i = 0; asforce && i + 1 < top->n; ++i) { /* on the element from r back to r - h */
       const PetscReal r = top->x[2 * i], h = r - top->x[2 * i + 2];
@@ -255,15 +255,15 @@ START_TEST(nodal_side_forces_act_as_the_traction_they_stand_for)
       force[i] += h * (r * r / 2. - r * h / 3. + h * h / 12.);
       force[i + 1] += h * (r * r / 2. - 2. * r * h / 3. + h * h / 4.);
     }
-    CkOk(AbutBodyAddSideForce(body, 3, force, f));
+    CkOk(AbutBodyAddSideForce(body, 3, 1, force, f));
     CkOk(AbutBodySolve(body, f));
     CkOk(AbutBodyGetPointValues(body, x, value[asforce]));
     CkOk(AbutBodyGetSolution(body, &u));
-    CkOk(AbutBodyGetSideTrace(body, 3, u, trace));
+    CkOk(AbutBodyGetSideTrace(body, 3, 1, u, trace));
     CkOk(VecDot(f, u, &dot));
     for (PetscInt i = 0; i < top->n; ++i) work += force[i] * trace[i];
     ck_assert_double_eq_tol(dot, work, 1e-12 * PetscAbsReal(work));
-    CkOk(AbutBodyGetSideTrace(body, 2, u, trace)); /* nothing moves at the base */
+    CkOk(AbutBodyGetSideTrace(body, 2, 1, u, trace)); /* nothing moves at the base */
     for (PetscInt i = 0; i < base->n; ++i) ck_assert_double_eq(trace[i], 0.);
     CkOk(AbutBodyGetReaction(body, reaction, applied));
     ck_assert_double_eq_tol(reaction[1], -applied[1], 1e-10);

@@ -288,7 +288,7 @@ static Vec SideForce(AbutBody body, const char name[], PetscBool spread, PetscRe
   CkOk(PetscCalloc1(side->n, &force));
   for (PetscInt i = 0; i < (spread ? side->n : 1); ++i) force[i] = spread ? total / side->n : total;
   CkOk(AbutBodyCreateVec(body, &f));
-  CkOk(AbutBodyAddSideForce(body, s, force, f));
+  CkOk(AbutBodyAddSideForce(body, s, 1, force, f));
   CkOk(PetscFree(force));
   return f;
 }

@@ -77,7 +77,7 @@ static void Solve(AbutBody body)
     }
   }
   CkOk(AbutBodyCreateVec(body, &f));
-  CkOk(AbutBodyAddSideForce(body, 3, force, f));
+  CkOk(AbutBodyAddSideForce(body, 3, 1, force, f));
   CkOk(AbutBodySolve(body, f));
   CkOk(VecDestroy(&f));
   CkOk(PetscFree(force));

@@ -118,7 +118,7 @@ static Vec Press(AbutBody body, PetscReal (*pressure)(PetscReal))
     }
   }
   CkOk(AbutBodyCreateVec(body, &f));
-  CkOk(AbutBodyAddSideForce(body, 3, force, f));
+  CkOk(AbutBodyAddSideForce(body, 3, 1, force, f));
   CkOk(PetscFree(force));
   return f;
 }

@@ -5,7 +5,7 @@
 
 /* Values at the nodes of one side, kept while a mesh adapts */
 typedef struct {
-  PetscInt   n;
+  PetscInt   n, each; /* nodes; values of each */
   PetscReal *x, *value;
 } AbutOldTrace;
 
@@ -32,7 +32,7 @@ struct _p_AbutInterface {
   PetscInt  nbodies, npairs;
   AbutBody *body;
   AbutPair *pair;
-  PetscInt *bodyof; /* [2*npairs] number of the body of side t = 2*pair+side */
+  PetscInt *bodyof; /* [2*npairs] number of the body of side t = 2*pair+side, -1 for a rigid obstacle */
 
   /* of the present meshes; index t = 2*pair+side */
   PetscBool        setupcalled;

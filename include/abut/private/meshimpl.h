@@ -38,8 +38,9 @@ struct _p_AbutMesh {
   AbutShape        shape;
   PetscInt         order;
   PetscBool        boxset, setupcalled;
-  PetscBool        balance; /* at most one level between quads with a common side */
-  AbutExpression   size;    /* wanted length of the cells of the first mesh, NULL: as they are */
+  PetscReal        sideends[ABUT_BOX_SIDES][4]; /* first and last point of each side */
+  PetscBool        balance;                     /* at most one level between quads with a common side */
+  AbutExpression   size;                        /* wanted length of the cells of the first mesh, NULL: as they are */
   DM               dm;
   PetscInt         generation; /* counts the meshes: 0 is the first */
   AbutBasis        basis;

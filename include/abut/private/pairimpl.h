@@ -10,26 +10,33 @@ typedef enum {
 } AbutPressureSide;
 
 /* A piece of the common refinement: one element of each side, and M[s][i][k] = integral of psi_i phi_k, psi_i the dual function of node
-   i of the pressure side's element, phi_k the function of node k of the element of side s: s = 0 the pressure side, s = 1 the other one */
+   i of the pressure side's element, phi_k the function of node k of the element of side s: s = 0 the pressure side, s = 1 the other one.
+   Both sides are pressed along the one normal, so that the forces on them balance to round-off. */
 typedef struct {
   PetscInt  element[2];
+  PetscReal normal[2]; /* outward of the pressure side */
   PetscReal M[2][ABUT_SIDE_NODES_MAX][ABUT_SIDE_NODES_MAX];
 } AbutSegment;
 
 struct _p_AbutPair {
   PETSCHEADER(int);
-  AbutBody         body[2];
+  AbutBody         body[2]; /* the second one NULL: a rigid obstacle */
   PetscInt         side[2];
-  AbutExpression   gap; /* NULL: the distance of the sides */
+  AbutExpression   gap;      /* NULL: the distance of the sides */
+  AbutExpression   obstacle; /* of a rigid one: its distance, positive where the body may be */
   PetscReal        penalty, theta, height;
   PetscBool        thetaset;
   AbutPressureSide pressureside;
 
   /* of the present meshes */
   PetscInt        generation[2];
-  PetscInt        which;    /* the side that carries the pressures */
-  PetscInt        n[2];     /* nodes of both sides */
-  PetscInt        order[2]; /* of the displacements of the pressure side, and of the other one */
+  PetscInt        which;      /* the side that carries the pressures */
+  PetscInt        n[2];       /* nodes of both sides */
+  PetscInt        order[2];   /* of the displacements of the pressure side, and of the other one: -1 if there is none */
+  PetscBool       straight;   /* both sides are, and opposite to each other */
+  PetscInt        components; /* of a trace at a node: 1 the normal displacement, 2 the vector */
+  PetscReal      *place[2];   /* of the nodes of the pressure side, and of the other one, along the former: distances from its first node */
+  PetscReal      *direction;  /* [2*(elements+1)] where they are curved: outward at the vertices of the pressure side */
   PetscInt        nsegments, room;
   AbutSegment    *segment;
   PetscReal       overlap[2]; /* the part of the pressure side that the other one faces: distances from its first node */
@@ -38,9 +45,22 @@ struct _p_AbutPair {
   const AbutSide *nodes[2];
 };
 
+/* Component d of the outward normal of a side on a segment, where traces are vectors: of the pressure side or of the other one */
+static inline PetscReal AbutSegmentNormal_Private(AbutPair pair, const AbutSegment *segment, PetscInt side, PetscInt d)
+{
+  if (pair->components == 1) return 1.;
+  return side ? -segment->normal[d] : segment->normal[d];
+}
+
 PETSC_INTERN PetscErrorCode AbutPairCheckFacing_Private(AbutPair);
 PETSC_INTERN PetscErrorCode AbutPairGetDistance_Private(AbutPair, PetscReal *);
-PETSC_INTERN PetscReal      AbutPairPlace_Private(AbutPair, PetscInt);
+PETSC_INTERN PetscErrorCode AbutPairObstacleFromOptions_Private(AbutPair);
+PETSC_INTERN PetscErrorCode AbutPairObstacleGap_Private(AbutPair, const PetscReal[2], const PetscReal[2], PetscReal *);
+/* project.c */
+PETSC_INTERN PetscErrorCode AbutPairProject_Private(AbutPair);
+PETSC_INTERN PetscErrorCode AbutPairProjectReset_Private(AbutPair);
+PETSC_INTERN PetscErrorCode AbutPairFace_Private(AbutPair, const PetscInt[2], PetscReal, PetscReal[2], PetscReal[2], PetscReal *);
+PETSC_INTERN void           AbutPairPointAt_Private(AbutPair, PetscReal, PetscReal[2]);
 PETSC_INTERN PetscErrorCode AbutPairGetReading_Private(AbutPair, const PetscReal[], PetscReal[]);
 PETSC_INTERN PetscErrorCode AbutPairGetLargest_Private(AbutPair, const PetscReal[], PetscReal *);
 PETSC_INTERN PetscBool      AbutPairEdgeBeyond_Private(AbutPair, const PetscReal[], const PetscReal[], PetscInt, PetscInt, PetscReal *);
