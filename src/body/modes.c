@@ -13,8 +13,8 @@ typedef struct {
 } AbutFreeMotions;
 
 /* A translation is free if its component is prescribed nowhere. A turn about (x0, y0) leaves u1 in peace on the line y = y0 and u2 on
-   x = x0, so it is free if all prescribed u1 lie on one line of constant y, and all prescribed u2 on one of constant x. The ends of the
-   straight sides stand for all their points. */
+   x = x0, so it is free if all prescribed u1 lie on one line of constant y, and all prescribed u2 on one of constant x. The ends of
+   straight segments stand for all their points. */
 static PetscErrorCode AbutBodyFindFreeMotions_Private(AbutBody body, AbutFreeMotions *f)
 {
   PetscReal lower[2], upper[2], least[2], most[2], size;
@@ -30,11 +30,12 @@ static PetscErrorCode AbutBodyFindFreeMotions_Private(AbutBody body, AbutFreeMot
   }
   for (PetscInt s = 0; s < nsides; ++s)
     for (PetscInt d = 0; d < 2; ++d) {
-      PetscReal ends[4], normal[2];
+      const PetscReal *ends;
+      PetscInt         segments;
 
       if (body->condition[s][d].type != ABUT_DISPLACEMENT) continue;
-      PetscCall(AbutMeshGetSideEnds(body->mesh, s, ends, normal));
-      for (PetscInt end = 0; end < 2; ++end) {
+      PetscCall(AbutMeshGetSideSegments(body->mesh, s, &segments, &ends));
+      for (PetscInt end = 0; end < 2 * segments; ++end) {
         least[!d] = PetscMin(least[!d], ends[2 * end + !d]);
         most[!d]  = PetscMax(most[!d], ends[2 * end + !d]);
       }

@@ -135,17 +135,18 @@ PetscErrorCode AbutPairCheck(AbutPair pair)
   AbutMesh             mesh;
   const PetscReal     *p;
   PetscReal            gap;
-  PetscInt             n;
+  PetscInt             n, samples;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(pair, ABUTPAIR_CLASSID, 1);
   if (!given) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(AbutBodyGetMesh(pair->body[0], &mesh));
-  PetscCall(AbutMeshGetSidePolygon(mesh, pair->side[0], &n, &p));
-  for (PetscInt i = 0; i + 1 < n; ++i)
-    for (PetscInt k = 0; k < (n > 2 ? 2 : ABUT_SAMPLES); ++k) {
-      const PetscReal z    = k / (n > 2 ? 1. : ABUT_SAMPLES - 1.);
-      const PetscReal x[2] = {(1. - z) * p[2 * i] + z * p[2 * i + 2], (1. - z) * p[2 * i + 1] + z * p[2 * i + 3]};
+  PetscCall(AbutMeshGetSideSegments(mesh, pair->side[0], &n, &p));
+  samples = n > 1 ? 2 : ABUT_SAMPLES;
+  for (PetscInt i = 0; i < n; ++i)
+    for (PetscInt k = 0; k < samples; ++k) {
+      const PetscReal z    = n > 1 ? k : k / (ABUT_SAMPLES - 1.);
+      const PetscReal x[2] = {(1. - z) * p[4 * i] + z * p[4 * i + 2], (1. - z) * p[4 * i + 1] + z * p[4 * i + 3]};
 
       PetscCall(AbutExpressionEvaluate(given, x, &gap));
     }

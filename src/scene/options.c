@@ -151,11 +151,14 @@ static PetscErrorCode AbutSceneCheckFollow_Private(AbutScene scene)
   PetscCall(AbutAdaptorFollows(scene->adaptor, 1, &follows)); /* meshes without balance are of order 1 */
   for (PetscInt b = 0; b < scene->nbodies && follows; ++b) {
     AbutMesh    mesh;
-    const char *name;
+    const char *name, *file;
 
     PetscCall(AbutBodyGetName(scene->body[b], &name));
     PetscCall(AbutBodyGetMesh(scene->body[b], &mesh));
     PetscCall(AbutMeshGetBalance(mesh, &balance));
+    PetscCall(AbutMeshGetFile(mesh, &file));
+    AbutCheckInput(!file || !scene->estimates[b], PetscObjectComm((PetscObject)scene),
+                   "adaptor_follow: the mesh of %s is from a file and cannot move; leave it out, or give a box", name);
     AbutCheckInput(balance, PetscObjectComm((PetscObject)scene),
                    "adaptor_follow: a mesh without balance cannot move; leave it out, or %s_mesh_balance", name);
   }
