@@ -84,6 +84,8 @@ PETSC_EXTERN PetscErrorCode AbutMeshGetSideName(AbutMesh, PetscInt, const char *
 PETSC_EXTERN PetscErrorCode AbutMeshFindSide(AbutMesh, const char[], const char[], PetscInt *);
 PETSC_EXTERN PetscErrorCode AbutMeshGetSideEnds(AbutMesh, PetscInt, PetscReal[4], PetscReal[2]);
 PETSC_EXTERN PetscErrorCode AbutMeshGetSideSegments(AbutMesh, PetscInt, PetscInt *, const PetscReal *[]);
+PETSC_EXTERN PetscErrorCode AbutMeshGetSideDirection(AbutMesh, PetscInt, PetscReal[2]);
+PETSC_EXTERN PetscErrorCode AbutMeshGetCurvePoint(AbutMesh, PetscInt, const PetscReal[2], PetscReal[2]);
 PETSC_EXTERN PetscErrorCode AbutMeshIsSideStraight(AbutMesh, PetscInt, PetscBool *);
 PETSC_EXTERN PetscErrorCode AbutMeshCovers(AbutMesh, const PetscReal[2], PetscBool *);
 PETSC_EXTERN PetscErrorCode AbutMeshAdapt(AbutMesh, const PetscBool[]);

@@ -167,3 +167,28 @@ PetscErrorCode AbutFirstCurvesFromOptions_Private(AbutMesh mesh)
   PetscOptionsEnd();
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/*@
+   AbutMeshGetCurvePoint - The point of the curve of a side that is nearest to a point
+
+   Not Collective
+
+   Input Parameters:
++  mesh - the mesh
+.  side - number of the side
+-  x    - [2] the point
+
+   Output Parameter:
+.  foot - [2] the point of the curve; x itself where the side is a polygon
+
+   Level: developer
+
+.seealso: `AbutMeshSetCurve()`
+@*/
+PetscErrorCode AbutMeshGetCurvePoint(AbutMesh mesh, PetscInt side, const PetscReal x[2], PetscReal foot[2])
+{
+  PetscFunctionBegin;
+  for (PetscInt d = 0; d < 2; ++d) foot[d] = x[d];
+  if (mesh->first) PetscCall(AbutFirstMoveToCurve_Private(mesh->first, side, foot));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

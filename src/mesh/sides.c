@@ -197,3 +197,39 @@ PetscErrorCode AbutMeshGetSideEnds(AbutMesh mesh, PetscInt side, PetscReal ends[
   normal[!d]            = 0.;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/*@
+   AbutMeshGetSideDirection - The mean of the outward normals of a side; the mesh need not be set up
+
+   Not Collective
+
+   Input Parameters:
++  mesh - the mesh
+-  side - number of the side
+
+   Output Parameter:
+.  normal - [2] unit vector: across the line from the first to the last point; that of the first segment if the side closes on itself
+
+   Level: developer
+
+.seealso: `AbutMeshGetSideEnds()`, `AbutMeshGetSideSegments()`
+@*/
+PetscErrorCode AbutMeshGetSideDirection(AbutMesh mesh, PetscInt side, PetscReal normal[2])
+{
+  const PetscReal *x;
+  PetscReal        d[2] = {0., 0.}, length = 0., h;
+  PetscInt         n;
+
+  PetscFunctionBegin;
+  PetscCall(AbutMeshGetSideSegments(mesh, side, &n, &x));
+  for (PetscInt k = 0; k < n; ++k) {
+    for (PetscInt i = 0; i < 2; ++i) d[i] += x[4 * k + 2 + i] - x[4 * k + i];
+    length += PetscSqrtReal(PetscSqr(x[4 * k + 2] - x[4 * k]) + PetscSqr(x[4 * k + 3] - x[4 * k + 1]));
+  }
+  if (PetscSqrtReal(d[0] * d[0] + d[1] * d[1]) < 1e-3 * length)
+    for (PetscInt i = 0; i < 2; ++i) d[i] = x[2 + i] - x[i];
+  h         = PetscSqrtReal(d[0] * d[0] + d[1] * d[1]);
+  normal[0] = d[1] / h;
+  normal[1] = -d[0] / h;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -98,7 +98,7 @@ PetscErrorCode AbutPairObstacleGap_Private(AbutPair pair, const PetscReal x[2], 
 -  i    - number of the node on the pressure side
 
    Output Parameter:
-.  gap - f, length; where it is the distance of curved sides, its mean with the node's dual function, and 0 at nodes that carry no pressure
+.  gap - f, length; 0 at nodes that carry no pressure
 
    Level: intermediate
 
@@ -106,9 +106,21 @@ PetscErrorCode AbutPairObstacleGap_Private(AbutPair pair, const PetscReal x[2], 
 @*/
 PetscErrorCode AbutPairGetNodeGap(AbutPair pair, PetscInt i, PetscReal *gap)
 {
+  const AbutSide  *m = pair->nodes[pair->which], *o = pair->body[1] ? pair->nodes[!pair->which] : NULL;
+  const PetscReal *s = pair->place[1], place = pair->place[0][i];
+  PetscInt         element[2] = {PetscMin(i, m->n - 2) / m->order, 0}, high = o ? (o->n - 1) / o->order : 0;
+  PetscReal        at[2], normal[2];
+
   PetscFunctionBegin;
-  if (!pair->obstacle && (pair->gap || pair->straight)) PetscCall(AbutPairGetGap(pair, pair->nodes[pair->which]->x + 2 * i, gap));
-  else *gap = pair->D[i] > 0. ? pair->F[i] / pair->D[i] : 0.;
+  *gap = 0.;
+  if (pair->D[i] <= 0.) PetscFunctionReturn(PETSC_SUCCESS);
+  while (high - element[1] > 1) { /* the other side's places descend */
+    const PetscInt middle = (element[1] + high) / 2;
+
+    if (s[o->order * middle] >= place) element[1] = middle;
+    else high = middle;
+  }
+  PetscCall(AbutPairFace_Private(pair, element, place, at, normal, gap));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
