@@ -1,8 +1,8 @@
 #include <abut/private/pairimpl.h>
 
-/* How the two sides of a pair lie against each other. Along straight sides one coordinate serves both. Along curved ones, which are polygons
-   here, every point of the pressure side looks along a direction that runs continuously from vertex to vertex (the mean of the normals there)
-   and sees at most one point of the other side; there is one normal for both. */
+/* How the two sides of a pair lie against each other. Along straight sides one coordinate serves both. Along curved ones, which are
+   polygons here, every point of the pressure side looks along a direction that runs continuously from vertex to vertex (the mean of the
+   normals there) and sees at most one point of the other side; there is one normal for both. */
 
 static PetscReal AbutCross_Private(const PetscReal a[2], const PetscReal b[2])
 {

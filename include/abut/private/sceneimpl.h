@@ -108,7 +108,7 @@ PETSC_INTERN PetscErrorCode AbutScenePrintCycle_Private(AbutScene, PetscInt);
 PETSC_INTERN PetscErrorCode AbutScenePrintEnd_Private(AbutScene);
 /* edges.c */
 PETSC_INTERN PetscErrorCode AbutSceneKeepEdges_Private(AbutScene);
-PETSC_INTERN PetscBool      AbutSideTouches_Private(const AbutMeshTopology *, PetscInt, const PetscReal[2]);
+PETSC_INTERN PetscErrorCode AbutSideTouches_Private(AbutMesh, PetscInt, const PetscReal[2], PetscBool *);
 PETSC_INTERN PetscErrorCode AbutSceneSettles_Private(AbutScene, PetscBool *);
 PETSC_INTERN PetscErrorCode AbutSceneAdaptBody_Private(AbutScene, AbutBody, const PetscBool[]);
 PETSC_INTERN PetscErrorCode AbutSceneFollows_Private(AbutScene, PetscBool *);
