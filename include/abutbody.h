@@ -4,13 +4,16 @@
 #include <abutmesh.h>
 
 /*S
-   AbutBody - One elastic body in plane strain: mesh, material, boundary conditions, operator, solver, displacement and stresses
+   AbutBody - One elastic body: mesh, material, boundary conditions, operator, solver, displacement and stresses
 
    Level: beginner
 
    Notes:
    Linear isotropic elasticity, eqs. (1)-(6) of the paper, on cells of order 1 to 4. Its options carry its name: `-lower_mesh_box`,
    `-lower_ksp_type`.
+
+   In plane strain, or as `AbutBodySetKinematics()` says. A body with axial symmetry is a whole turn of its mesh about the axis x = 0: what
+   is "stress times length" or "stress times area" below is then a force or an energy, over the whole circumference.
 
 .seealso: `AbutBodyCreate()`, `AbutBodySolve()`, `AbutMesh`, `AbutPair`, `AbutEstimator`
 S*/
@@ -23,10 +26,26 @@ typedef enum {
   ABUT_CONTACT
 } AbutConditionType;
 
+/* What the two coordinates are: a slice of a long body, a thin sheet, or half a section through the axis of a body of revolution */
+typedef enum {
+  ABUT_PLANE_STRAIN,
+  ABUT_PLANE_STRESS,
+  ABUT_AXISYMMETRIC
+} AbutKinematics;
+PETSC_EXTERN const char *const AbutKinematicsNames[];
+
+/* The strain of a body without stress at a point: e11, e22, e12 (half the angle), e33 */
+typedef PetscErrorCode (*AbutStrainFunction)(const PetscReal x[2], PetscReal eps[4], void *ctx);
+
 PETSC_EXTERN PetscClassId   ABUTBODY_CLASSID;
 PETSC_EXTERN PetscErrorCode AbutBodyCreate(MPI_Comm, const char[], AbutBody *);
 PETSC_EXTERN PetscErrorCode AbutBodySetMaterial(AbutBody, PetscReal, PetscReal);
 PETSC_EXTERN PetscErrorCode AbutBodyGetMaterial(AbutBody, PetscReal *, PetscReal *);
+PETSC_EXTERN PetscErrorCode AbutBodyGetPlaneMaterial(AbutBody, PetscReal *, PetscReal *);
+PETSC_EXTERN PetscErrorCode AbutBodySetKinematics(AbutBody, AbutKinematics);
+PETSC_EXTERN PetscErrorCode AbutBodyGetKinematics(AbutBody, AbutKinematics *);
+PETSC_EXTERN PetscErrorCode AbutBodyGetThickness(AbutBody, const PetscReal[2], PetscReal *);
+PETSC_EXTERN PetscErrorCode AbutBodyAddInitialStrain(AbutBody, const char[], AbutStrainFunction, void *);
 PETSC_EXTERN PetscErrorCode AbutBodySetDisplacement(AbutBody, const char[], PetscInt, AbutPointFunction, void *);
 PETSC_EXTERN PetscErrorCode AbutBodySetTraction(AbutBody, const char[], PetscInt, AbutPointFunction, void *);
 PETSC_EXTERN PetscErrorCode AbutBodySetContact(AbutBody, PetscInt);
@@ -76,9 +95,12 @@ PETSC_EXTERN PetscErrorCode AbutBodyGetLinearCost(AbutBody, PetscReal, PetscReal
 /* Stress (s11, s22, s12) of the last solve in local cell c at a reference point: [-1,1]^2 for quads, (0,0)(1,0)(0,1) for triangles */
 PETSC_EXTERN PetscErrorCode AbutBodyGetCellStress(AbutBody, PetscInt, const PetscReal[2], PetscReal[3]);
 PETSC_EXTERN PetscErrorCode AbutBodyGetCellStresses(AbutBody, PetscInt, PetscInt, const PetscReal[], const PetscReal[], PetscReal[]);
+PETSC_EXTERN PetscErrorCode AbutBodyGetCellStresses3D(AbutBody, PetscInt, PetscInt, const PetscReal[], const PetscReal[], PetscReal[],
+                                                      PetscReal[]);
+PETSC_EXTERN PetscErrorCode AbutBodyGetCellMeasure(AbutBody, PetscInt, PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutBodyGetCellPoint(AbutBody, PetscInt, const PetscReal[2], PetscReal[2], PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutBodyGetPointValues(AbutBody, const PetscReal[2], PetscReal[7]);
-PETSC_EXTERN PetscErrorCode AbutVonMises(const PetscReal[3], PetscReal, PetscReal *);
+PETSC_EXTERN PetscErrorCode AbutVonMises(const PetscReal[4], PetscReal *);
 
 /* One side of a body as an ordered list of nodes, the same on all ranks. Nodes follow the boundary with the body on the left; a node of
    a side always carries unknowns (hanging ones never lie on the boundary). */
