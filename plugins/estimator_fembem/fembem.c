@@ -61,7 +61,7 @@ static PetscErrorCode AbutEstimatorEstimate_Fembem(AbutEstimator est, AbutBody b
 
   PetscFunctionBegin;
   PetscCall(AbutEstimatorGetData(est, &fembem));
-  PetscCall(AbutBodyGetMaterial(body, &young, &poisson));
+  PetscCall(AbutBodyGetPlaneMaterial(body, &young, &poisson));
   PetscCall(AbutBodyGetBoundary(body, &given));
   PetscCall(FembemBoundaryCreate(comm, given, young, poisson, &boundary));
   FembemTakeOffRigidMotion(&boundary);

@@ -18,6 +18,8 @@
      1/2 h/p ||[s n]||^2 over its sides inside the body, the coarse cell above hanging sides as well;
      h/p ||t - s n||^2 over its sides on the boundary, in the components without a given displacement.
 
+   With axial symmetry all are integrals over a whole turn, and div s has the terms (s_rr - s_tt)/r and s_rz/r.
+
    There t is the given traction, or that of the contact pressure, -p n: then the term is the shear stress, and the normal stress plus the
    pressure. The pressure comes from the nodal contact forces: force over the integral of the node's function, interpolated.
 
