@@ -27,6 +27,7 @@ typedef struct {
 PETSC_EXTERN PetscClassId   ABUTESTIMATOR_CLASSID;
 PETSC_EXTERN PetscErrorCode AbutEstimatorRegister(const char[], PetscErrorCode (*)(AbutEstimator));
 PETSC_EXTERN PetscErrorCode AbutEstimatorSetOps(AbutEstimator, const AbutEstimatorOps *);
+PETSC_EXTERN PetscErrorCode AbutEstimatorSetFeatures(AbutEstimator, PetscInt);
 PETSC_EXTERN PetscErrorCode AbutEstimatorSetAbout(AbutEstimator, const char[]);
 PETSC_EXTERN PetscErrorCode AbutEstimatorSetData(AbutEstimator, void *);
 PETSC_EXTERN PetscErrorCode AbutEstimatorGetData(AbutEstimator, void *);
@@ -36,6 +37,7 @@ PETSC_EXTERN PetscErrorCode AbutEstimatorCreate(MPI_Comm, AbutEstimator *);
 PETSC_EXTERN PetscErrorCode AbutEstimatorSetType(AbutEstimator, AbutEstimatorType);
 PETSC_EXTERN PetscErrorCode AbutEstimatorGetType(AbutEstimator, AbutEstimatorType *);
 PETSC_EXTERN PetscErrorCode AbutEstimatorSetFromOptions(AbutEstimator);
+PETSC_EXTERN PetscErrorCode AbutEstimatorCheck(AbutEstimator, AbutBody);
 PETSC_EXTERN PetscErrorCode AbutEstimatorEstimate(AbutEstimator, AbutBody, Vec);
 PETSC_EXTERN PetscErrorCode AbutEstimatorGetNorms(AbutBody, Vec, PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutEstimatorView(AbutEstimator, PetscViewer);

@@ -16,12 +16,40 @@ typedef struct {
 
 typedef struct _n_AbutElement *AbutElement;
 
+/* One thing that acts on a body beside its conditions, see hooks.c */
+typedef enum {
+  ABUT_HOOK_FEATURE, /* only says that it is there */
+  ABUT_HOOK_FORCE,
+  ABUT_HOOK_TRACTION,
+  ABUT_HOOK_LOAD,
+  ABUT_HOOK_FOUNDATION,
+  ABUT_HOOK_OFFSET
+} AbutHookType;
+typedef struct _n_AbutHook *AbutHook;
+struct _n_AbutHook {
+  AbutHookType  type;
+  char         *name; /* of who brought it */
+  PetscLogEvent event;
+  PetscInt      feature; /* ABUT_FEATURE_..., 0: none */
+  PetscInt      side;
+  PetscReal     stiffness[2]; /* of a foundation, normal and tangential, stress over length */
+  union {
+    AbutForceFunction    force;
+    AbutTractionFunction traction;
+    AbutLoadFunction     load;
+    AbutPointFunction    offset;
+  } call;
+  void    *ctx;
+  AbutHook next;
+};
+
 struct _p_AbutBody {
   PETSCHEADER(int);
   AbutMesh      mesh;
   PetscReal     young, poisson, lambda, mu;
   AbutCondition condition[ABUT_MAX_SIDES][2];
   PetscBool     meandilatation; /* in each cell: against locking */
+  AbutHook      hooks;          /* in the order they came; NULL: none */
 
   /* of the present mesh */
   AbutElement   element;     /* what all cells share */
@@ -29,6 +57,7 @@ struct _p_AbutBody {
   Mat           A;           /* stiffness, rows and columns of prescribed unknowns replaced by mu on the diagonal */
   Mat           P;           /* what is preconditioned or factored: A, or if modes are free A on springs that resist them */
   Mat           Ac;          /* rows of the stiffness at the prescribed unknowns: for the lift and the reactions */
+  Mat           S;           /* stiffness of the foundations, part of A before that; NULL: none */
   IS            constrained; /* owned prescribed unknowns, global numbers */
   Vec           prescribed;  /* their values, laid out like the rows of Ac */
   Vec           load, lift;  /* nodal forces of the tractions; -Ac^T times the prescribed values */
@@ -78,4 +107,14 @@ PETSC_INTERN PetscErrorCode AbutBodyBoundaryReset_Private(AbutBody);
 PETSC_INTERN PetscErrorCode AbutBodyGatherBoundary_Private(AbutBody, Vec, const PetscReal *[]);
 PETSC_INTERN PetscErrorCode AbutBodyCreateReaction_Private(AbutBody, Vec *);
 PETSC_INTERN PetscErrorCode AbutBodyUngatherBoundary_Private(AbutBody, const PetscReal *[]);
+PETSC_INTERN PetscErrorCode AbutHooksDestroy_Private(AbutHook *);
+/* forces.c */
+PETSC_INTERN PetscErrorCode AbutBodyHookForces_Private(AbutBody);
+PETSC_INTERN PetscBool      AbutBodyHasTraction_Private(AbutBody, PetscInt, PetscInt);
+PETSC_INTERN PetscErrorCode AbutBodyHookTraction_Private(AbutBody, PetscInt, const PetscReal[2], const PetscReal[2], PetscReal[2]);
+/* foundation.c */
+PETSC_INTERN PetscErrorCode AbutBodyAssembleFoundation_Private(AbutBody);
+PETSC_INTERN PetscErrorCode AbutBodyHoldsSide_Private(AbutBody, PetscInt, PetscInt, PetscBool *);
+PETSC_INTERN PetscErrorCode AbutBodyGetFoundationForce_Private(AbutBody, PetscReal[2], PetscReal *);
+PETSC_INTERN PetscErrorCode AbutBodyAddFoundationTraction_Private(AbutBody, AbutBoundary *);
 PETSC_EXTERN PetscLogEvent  ABUTBODY_Assemble, ABUTBODY_Solve;
