@@ -54,4 +54,4 @@ PETSC_EXTERN PetscErrorCode AbutEffectGetEvent(AbutEffect, PetscLogEvent *);
 PETSC_EXTERN PetscErrorCode AbutEffectOptionsSide(AbutEffect, AbutOptionItems, PetscInt *);
 PETSC_EXTERN PetscErrorCode AbutEffectOptionsExpression(AbutEffect, AbutOptionItems, const char[], const char[], const char[],
                                                         AbutExpression *);
-PETSC_EXTERN PetscErrorCode AbutEffectCheckSide(AbutEffect, AbutBody, PetscInt, AbutExpression);
+PETSC_EXTERN PetscErrorCode AbutEffectCheckSide(AbutEffect, AbutBody, PetscInt, PetscBool);

@@ -153,44 +153,38 @@ PetscErrorCode AbutEffectOptionsExpression(AbutEffect effect, AbutOptionItems Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-#define ABUT_SAMPLES 32
-
 /*@C
-   AbutEffectCheckSide - Ends the run if a side that an effect loads is in contact, or what is given there is not finite
+   AbutEffectCheckSide - Ends the run if a side that an effect acts on is in contact, or if it is not
 
    Collective
 
    Input Parameters:
-+  effect - the effect
-.  body   - its body
-.  side   - number of the side
--  e      - what is given there, or `NULL`
++  effect  - the effect
+.  body    - its body
+.  side    - number of the side
+-  contact - whether the effect is one for sides in contact
 
    Level: advanced
 
 .seealso: `AbutEffectOptionsSide()`, `AbutEffectCheck()`
 @*/
-PetscErrorCode AbutEffectCheckSide(AbutEffect effect, AbutBody body, PetscInt side, AbutExpression e)
+PetscErrorCode AbutEffectCheckSide(AbutEffect effect, AbutBody body, PetscInt side, PetscBool contact)
 {
   AbutMesh          mesh;
-  AbutConditionType type;
+  AbutConditionType type[2];
   const char       *where;
-  PetscReal         ends[4], normal[2], value;
+  PetscBool         is;
 
   PetscFunctionBegin;
   PetscCall(AbutBodyGetMesh(body, &mesh));
   PetscCall(AbutMeshGetSideName(mesh, side, &where));
-  for (PetscInt d = 0; d < 2; ++d) {
-    PetscCall(AbutBodyGetCondition(body, side, d, &type));
-    AbutCheckInput(type != ABUT_CONTACT, PetscObjectComm((PetscObject)effect),
-                   "%s_effect_side: %s of %s is in contact, and its tractions are those of contact; give a side without a pair",
-                   ((PetscObject)effect)->name, where, ((PetscObject)body)->name);
-  }
-  PetscCall(AbutMeshGetSideEnds(mesh, side, ends, normal));
-  for (PetscInt i = 0; e && i < ABUT_SAMPLES; ++i) {
-    const PetscReal z = (i + 0.5) / ABUT_SAMPLES, x[2] = {(1. - z) * ends[0] + z * ends[2], (1. - z) * ends[1] + z * ends[3]};
-
-    PetscCall(AbutExpressionEvaluate(e, x, &value));
-  }
+  for (PetscInt d = 0; d < 2; ++d) PetscCall(AbutBodyGetCondition(body, side, d, &type[d]));
+  is = (PetscBool)(type[0] == ABUT_CONTACT || type[1] == ABUT_CONTACT);
+  AbutCheckInput(contact || !is, PetscObjectComm((PetscObject)effect),
+                 "%s_effect_side: %s of %s is in contact, and its tractions are those of contact; give a side without a pair",
+                 ((PetscObject)effect)->name, where, ((PetscObject)body)->name);
+  AbutCheckInput(is || !contact, PetscObjectComm((PetscObject)effect),
+                 "%s_effect_side: %s of %s is in no pair; give a side in contact, or leave the effect out", ((PetscObject)effect)->name,
+                 where, ((PetscObject)body)->name);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -22,6 +22,10 @@ PetscErrorCode AbutEffectInitializePackage_Private(void)
   PetscCall(PetscClassIdRegister("Abut Effect", &ABUTEFFECT_CLASSID));
   PetscCall(PetscRegisterFinalize(AbutEffectFinalizePackage));
   PetscCall(AbutEffectRegister(ABUTEFFECTGRAVITY, AbutEffectCreate_Gravity));
+  PetscCall(AbutEffectRegister(ABUTEFFECTFORCE, AbutEffectCreate_Force));
+  PetscCall(AbutEffectRegister(ABUTEFFECTPRESSURE, AbutEffectCreate_Pressure));
+  PetscCall(AbutEffectRegister(ABUTEFFECTSPRING, AbutEffectCreate_Spring));
+  PetscCall(AbutEffectRegister(ABUTEFFECTOVERLAP, AbutEffectCreate_Overlap));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
