@@ -53,5 +53,8 @@ PETSC_EXTERN PetscErrorCode AbutEstimatorCompareStress(AbutEstimator, AbutBody, 
 /* For what estimates the error of the stress without a better one: from ||s - s_F||_e^2 of each local cell to eta_e, eq. (27) */
 PETSC_EXTERN PetscErrorCode AbutEstimatorScale(AbutBody, PetscReal, PetscReal[]);
 
+/* For what knows no body force: a stress that balances a constant one, to be taken off and added again, and its displacement */
+PETSC_EXTERN PetscErrorCode AbutEstimatorGetParticular(AbutBody, const PetscReal[2], PetscReal[], PetscReal[3]);
+
 /* For what gathers from cells to vertices: sums over the ranks at the vertices with unknowns, v[bs*nunknown] as in AbutMeshTopology */
 PETSC_EXTERN PetscErrorCode AbutEstimatorSumAtVertices(AbutBody, PetscInt, PetscReal[]);
