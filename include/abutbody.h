@@ -34,9 +34,6 @@ typedef enum {
 } AbutKinematics;
 PETSC_EXTERN const char *const AbutKinematicsNames[];
 
-/* The strain of a body without stress at a point: e11, e22, e12 (half the angle), e33 */
-typedef PetscErrorCode (*AbutStrainFunction)(const PetscReal x[2], PetscReal eps[4], void *ctx);
-
 PETSC_EXTERN PetscClassId   ABUTBODY_CLASSID;
 PETSC_EXTERN PetscErrorCode AbutBodyCreate(MPI_Comm, const char[], AbutBody *);
 PETSC_EXTERN PetscErrorCode AbutBodySetMaterial(AbutBody, PetscReal, PetscReal);
@@ -45,12 +42,40 @@ PETSC_EXTERN PetscErrorCode AbutBodyGetPlaneMaterial(AbutBody, PetscReal *, Pets
 PETSC_EXTERN PetscErrorCode AbutBodySetKinematics(AbutBody, AbutKinematics);
 PETSC_EXTERN PetscErrorCode AbutBodyGetKinematics(AbutBody, AbutKinematics *);
 PETSC_EXTERN PetscErrorCode AbutBodyGetThickness(AbutBody, const PetscReal[2], PetscReal *);
-PETSC_EXTERN PetscErrorCode AbutBodyAddInitialStrain(AbutBody, const char[], AbutStrainFunction, void *);
 PETSC_EXTERN PetscErrorCode AbutBodySetDisplacement(AbutBody, const char[], PetscInt, AbutPointFunction, void *);
 PETSC_EXTERN PetscErrorCode AbutBodySetTraction(AbutBody, const char[], PetscInt, AbutPointFunction, void *);
 PETSC_EXTERN PetscErrorCode AbutBodySetContact(AbutBody, PetscInt);
 PETSC_EXTERN PetscErrorCode AbutBodyGetCondition(AbutBody, PetscInt, PetscInt, AbutConditionType *);
 PETSC_EXTERN PetscErrorCode AbutBodySetFromOptions(AbutBody);
+
+/* What acts on a body beside its conditions. Each thing has the name of who brought it, for messages, and an event that is logged when it
+   acts. It is added before the body is set up, and asked for on each mesh. */
+typedef PetscErrorCode (*AbutForceFunction)(const PetscReal x[2], PetscReal force[2], void *ctx);
+typedef PetscErrorCode (*AbutTractionFunction)(const PetscReal x[2], const PetscReal normal[2], PetscReal traction[2], void *ctx);
+typedef PetscErrorCode (*AbutLoadFunction)(AbutBody, Vec load, void *ctx);
+typedef PetscErrorCode (*AbutStrainFunction)(const PetscReal x[2], PetscReal strain[4], void *ctx); /* e11, e22, e12, e33 */
+PETSC_EXTERN PetscErrorCode AbutBodyAddForce(AbutBody, const char[], PetscLogEvent, PetscBool, AbutForceFunction, void *);
+PETSC_EXTERN PetscErrorCode AbutBodyAddTraction(AbutBody, const char[], PetscLogEvent, PetscInt, AbutTractionFunction, void *);
+PETSC_EXTERN PetscErrorCode AbutBodyAddLoad(AbutBody, const char[], PetscLogEvent, AbutLoadFunction, void *);
+PETSC_EXTERN PetscErrorCode AbutBodyAddFoundation(AbutBody, const char[], PetscLogEvent, PetscInt, PetscReal, PetscReal);
+PETSC_EXTERN PetscErrorCode AbutBodyAddSideOffset(AbutBody, const char[], PetscLogEvent, PetscInt, AbutPointFunction, void *);
+PETSC_EXTERN PetscErrorCode AbutBodyAddInitialStrain(AbutBody, const char[], PetscLogEvent, AbutStrainFunction, void *);
+PETSC_EXTERN PetscErrorCode AbutBodyGetForce(AbutBody, const PetscReal[2], PetscReal[2]);
+PETSC_EXTERN PetscErrorCode AbutBodyGetFoundation(AbutBody, PetscInt, PetscReal *, PetscReal *);
+PETSC_EXTERN PetscErrorCode AbutBodyGetSideOffset(AbutBody, PetscInt, const PetscReal[2], PetscReal *);
+PETSC_EXTERN PetscErrorCode AbutBodyHasSideOffset(AbutBody, PetscInt, PetscBool *);
+
+/* What an estimator may have to know of a body; it says which of them it can do, see AbutEstimatorSetFeatures() */
+#define ABUT_FEATURE_BODY_FORCE_CONSTANT 0x01
+#define ABUT_FEATURE_BODY_FORCE_VARYING  0x02
+#define ABUT_FEATURE_FOUNDATION          0x04 /* its tractions are in those of AbutBodyGetBoundary() */
+#define ABUT_FEATURE_INITIAL_STRAIN      0x08
+#define ABUT_FEATURE_AXISYMMETRIC        0x10
+#define ABUT_FEATURE_PLANE_STRESS        0x20
+#define ABUT_FEATURE_LOAD                0x40 /* nodal forces of which nothing more is known */
+PETSC_EXTERN PetscErrorCode AbutBodyAddFeature(AbutBody, const char[], PetscInt);
+PETSC_EXTERN PetscErrorCode AbutBodyGetFeatures(AbutBody, PetscInt *);
+PETSC_EXTERN PetscErrorCode AbutBodyFindFeature(AbutBody, PetscInt, const char *[], const char *[]);
 PETSC_EXTERN PetscErrorCode AbutBodyCheck(AbutBody);
 PETSC_EXTERN PetscErrorCode AbutBodySetUp(AbutBody);
 PETSC_EXTERN PetscErrorCode AbutBodyView(AbutBody, PetscViewer);
@@ -132,7 +157,9 @@ typedef struct {
   PetscReal         *u;         /* [2*nnodes] displacements there */
   PetscInt          *side;      /* [n] side number of the element */
   AbutConditionType *condition; /* [2*n] what is known on the element, per component */
-  PetscReal *traction; /* [2*(order+1)*n] given traction, L2 projection: (t1,t2) at the nodes of each element; 0 where none is given */
+  PetscReal
+    *traction; /* [2*(order+1)*n] given traction, L2 projection, and that of springs under the displacement: (t1,t2) at the nodes of each
+                          element; 0 where none is given */
   PetscReal *reaction; /* [2*nnodes] nodal forces by which prescribed displacements hold the body, K u - f, 0 elsewhere */
   PetscReal *contact;  /* [2*nnodes] nodal contact forces on the body */
 } AbutBoundary;

@@ -194,6 +194,7 @@ PetscErrorCode AbutBodySetUp(AbutBody body)
   PetscCall(VecDuplicate(body->load, &body->rhs));
   PetscCall(AbutBodyBoundarySetUp_Private(body));
   PetscCall(AbutBodyConditionsSetUp_Private(body));
+  PetscCall(AbutBodyHookForces_Private(body));
   if (body->initial) PetscCall(AbutBodyInitialSetUp_Private(body));
   PetscCall(AbutBodyAssemble_Private(body));
   PetscCall(AbutBodyModesSetUp_Private(body));
@@ -225,6 +226,7 @@ PetscErrorCode AbutBodyReset_Private(AbutBody body)
   PetscCall(AbutBodyModesReset_Private(body));
   PetscCall(MatDestroy(&body->A));
   PetscCall(MatDestroy(&body->Ac));
+  PetscCall(MatDestroy(&body->S));
   PetscCall(ISDestroy(&body->constrained));
   PetscCall(VecDestroy(&body->prescribed));
   PetscCall(VecDestroy(&body->load));
@@ -263,7 +265,7 @@ PetscErrorCode AbutBodyDestroy(AbutBody *body)
   PetscCall(AbutBodyReset_Private(*body));
   for (PetscInt s = 0; s < ABUT_MAX_SIDES; ++s)
     for (PetscInt d = 0; d < 2; ++d) PetscCall(AbutExpressionDestroy(&(*body)->condition[s][d].value));
-  PetscCall(AbutBodyInitialDestroy_Private(*body));
+  PetscCall(AbutHooksDestroy_Private(&(*body)->hooks));
   PetscCall(KSPDestroy(&(*body)->ksp));
   PetscCall(AbutMeshDestroy(&(*body)->mesh));
   PetscCall(PetscHeaderDestroy(body));

@@ -167,21 +167,24 @@ PetscErrorCode AbutBodyEdgeMoments_Private(AbutBody body, PetscInt side, PetscIn
                                            PetscBool whole, PetscReal m[])
 {
   const AbutCondition *c      = &body->condition[side][component];
-  const PetscReal      length = PetscSqrtReal(PetscSqr(b[0] - a[0]) + PetscSqr(b[1] - a[1]));
-  PetscReal            z[12 + 4 * ABUT_ORDER_MAX], w[12 + 4 * ABUT_ORDER_MAX], N[ABUT_SIDE_NODES_MAX];
-  PetscInt             p;
+  const PetscReal      length = PetscSqrtReal(PetscSqr(b[0] - a[0]) + PetscSqr(b[1] - a[1])),
+                  normal[2]   = {(b[1] - a[1]) / length, (a[0] - b[0]) / length};
+  PetscReal z[12 + 4 * ABUT_ORDER_MAX], w[12 + 4 * ABUT_ORDER_MAX], N[ABUT_SIDE_NODES_MAX];
+  PetscInt  p;
 
   PetscFunctionBegin;
   PetscCall(AbutMeshGetOrder(body->mesh, &p));
   for (PetscInt i = 0; i <= p; ++i) m[i] = 0.;
-  if (c->type != ABUT_TRACTION || !c->value) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!AbutBodyHasTraction_Private(body, side, component)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscDTGaussQuadrature(12 + 4 * p, 0., 1., z, w));
   for (PetscInt q = 0; q < 12 + 4 * p; ++q) {
     const PetscReal s = z[q] * z[q] * z[q] * (10. - 15. * z[q] + 6. * z[q] * z[q]), ds = 30. * PetscSqr(z[q] * (1. - z[q]));
     const PetscReal x[2] = {a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1])};
-    PetscReal       t, thickness = 1.;
+    PetscReal       t = 0., more[2] = {0., 0.}, thickness = 1.;
 
-    PetscCall(AbutExpressionEvaluate(c->value, x, &t));
+    if (c->value) PetscCall(AbutExpressionEvaluate(c->value, x, &t));
+    PetscCall(AbutBodyHookTraction_Private(body, side, x, normal, more));
+    t += more[component];
     PetscCall(AbutEvaluateLobatto(p, 2. * s - 1., N, NULL));
     if (whole) PetscCall(AbutBodyGetThickness(body, x, &thickness));
     for (PetscInt i = 0; i <= p; ++i) m[i] += w[q] * ds * length * t * N[i] * thickness;
@@ -198,7 +201,7 @@ static PetscErrorCode AbutBodyLoad_Private(AbutBody body, const AbutMeshTopology
   PetscFunctionBegin;
   for (PetscInt i = 0; i < b->n; ++i)
     for (PetscInt d = 0; d < 2; ++d) {
-      if (body->condition[b->side[i]][d].type != ABUT_TRACTION || !body->condition[b->side[i]][d].value) continue;
+      if (!AbutBodyHasTraction_Private(body, b->side[i], d)) continue;
       PetscCall(AbutBodyEdgeMoments_Private(body, b->side[i], d, b->x + 2 * AbutBoundaryNode(b, i, 0),
                                             b->x + 2 * AbutBoundaryNode(b, i, b->order), PETSC_TRUE, m));
       for (PetscInt k = 0; k <= b->order; ++k) {

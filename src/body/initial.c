@@ -3,65 +3,16 @@
 /* Strains that a body has without stress, as of its temperature: nodal forces int B' D eps0 in the load, stresses D (eps - eps0). With the
    mean dilatation of cells that of eps0 is a mean too. Gauss points: one more in each direction than the order, in triangles too. */
 
-/*@C
-   AbutBodyAddInitialStrain - Adds a strain that a body has without stress
-
-   Logically Collective
-
-   Input Parameters:
-+  body     - the body
-.  name     - what it is, for messages
-.  function - e11, e22, e12 (half the change of the angle) and e33 at a point; it must be the same on all ranks
--  ctx      - handed to the function; it must last as long as the body
-
-   Level: intermediate
-
-   Notes:
-   Stresses are those of the strain less this one. In plane strain e33 counts like the others, for the strain across the plane stays 0; in
-   plane stress it makes no stress. Several add up.
-
-   Limits: orders of convergence need a smooth function; at order p one that is not a polynomial of degree p - 1 leaves a stress of its own
-   in every cell, of the size of the discretisation error.
-
-.seealso: `AbutBodySetUp()`, `AbutBodyGetCellStresses()`, `AbutBodyGetEnergy()`
-@*/
-PetscErrorCode AbutBodyAddInitialStrain(AbutBody body, const char name[], AbutStrainFunction function, void *ctx)
-{
-  AbutInitialStrain *end = &body->initial;
-
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, ABUTBODY_CLASSID, 1);
-  while (*end) end = &(*end)->next;
-  PetscCall(PetscNew(end));
-  PetscCall(PetscStrallocpy(name, &(*end)->name));
-  (*end)->function = function;
-  (*end)->ctx      = ctx;
-  body->generation = -1; /* what was set up is no longer right */
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode AbutBodyInitialDestroy_Private(AbutBody body)
-{
-  PetscFunctionBegin;
-  while (body->initial) {
-    AbutInitialStrain next = body->initial->next;
-
-    PetscCall(PetscFree(body->initial->name));
-    PetscCall(PetscFree(body->initial));
-    body->initial = next;
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The sum of all at a point, and their dilatation; a sheet gets thicker as it likes */
 static PetscErrorCode AbutBodyInitialStrain_Private(AbutBody body, const PetscReal x[2], PetscReal eps[4], PetscReal *dilatation)
 {
   PetscFunctionBegin;
   for (PetscInt i = 0; i < 4; ++i) eps[i] = 0.;
-  for (AbutInitialStrain s = body->initial; s; s = s->next) {
+  for (AbutHook h = body->hooks; h; h = h->next) {
     PetscReal one[4];
 
-    PetscCall((*s->function)(x, one, s->ctx));
+    if (h->type != ABUT_HOOK_STRAIN) continue;
+    PetscCall((*h->call.strain)(x, one, h->ctx));
     for (PetscInt i = 0; i < 4; ++i) eps[i] += one[i];
   }
   if (body->kinematics == ABUT_PLANE_STRESS) eps[3] = 0.;

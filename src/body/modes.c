@@ -1,7 +1,7 @@
 #include <abut/private/bodyimpl.h> /*I "abutbody.h" I*/
 
-/* Rigid motions that no prescribed displacement resists. Their shapes follow from the box and the conditions; on a mesh they are the null
-   space of the stiffness, and a few springs that carry nothing make it a matrix with a factor. */
+/* Rigid motions that no prescribed displacement and no foundation resists. Their shapes follow from the box and the conditions; on a mesh
+   they are the null space of the stiffness, and a few springs that carry nothing make it a matrix with a factor. */
 
 #define ABUT_MOVE_X 0
 #define ABUT_MOVE_Y 1
@@ -32,8 +32,10 @@ static PetscErrorCode AbutBodyFindFreeMotions_Private(AbutBody body, AbutFreeMot
   for (PetscInt s = 0; s < nsides; ++s)
     for (PetscInt d = 0; d < 2; ++d) {
       PetscReal ends[4], normal[2];
+      PetscBool holds;
 
-      if (body->condition[s][d].type != ABUT_DISPLACEMENT) continue;
+      PetscCall(AbutBodyHoldsSide_Private(body, s, d, &holds));
+      if (!holds) continue;
       PetscCall(AbutMeshGetSideEnds(body->mesh, s, ends, normal));
       for (PetscInt end = 0; end < 2; ++end) {
         least[!d] = PetscMin(least[!d], ends[2 * end + !d]);
@@ -57,7 +59,7 @@ static void AbutMotionAt_Private(PetscInt kind, const PetscReal center[2], const
 }
 
 /*@
-   AbutBodyGetFreeModeCount - How many rigid motions no prescribed displacement resists; needs no mesh yet
+   AbutBodyGetFreeModeCount - How many rigid motions no prescribed displacement and no spring resists; needs no mesh yet
 
    Not Collective
 

@@ -184,6 +184,7 @@ PetscErrorCode AbutBodyAssemble_Private(AbutBody body)
   PetscCall(AbutMeshGetTopology(body->mesh, &t));
   PetscCall(AbutBodyPreallocate_Private(body, t));
   PetscCall(AbutBodyValues_Private(body, t));
+  PetscCall(AbutBodyAssembleFoundation_Private(body));
   PetscCall(ISCreateStride(PetscObjectComm((PetscObject)body), 2 * t->nowned, 2 * t->firstowned, 1, &columns));
   PetscCall(MatCreateSubMatrix(body->A, body->constrained, columns, MAT_INITIAL_MATRIX, &body->Ac));
   PetscCall(ISDestroy(&columns));

@@ -217,7 +217,7 @@ PetscErrorCode AbutBodyGetPointValues(AbutBody body, const PetscReal x[2], Petsc
 }
 
 /*@
-   AbutBodyGetWork - The work of all forces on a body: tractions, contact forces and reactions times their displacements
+   AbutBodyGetWork - The work of all forces on a body: loads, contact forces, reactions and springs times their displacements
 
    Collective
 
@@ -236,7 +236,7 @@ PetscErrorCode AbutBodyGetPointValues(AbutBody body, const PetscReal x[2], Petsc
 @*/
 PetscErrorCode AbutBodyGetWork(AbutBody body, PetscReal *work)
 {
-  PetscReal w[3];
+  PetscReal w[3], force[2], springs;
   Vec       reaction;
 
   PetscFunctionBegin;
@@ -245,7 +245,8 @@ PetscErrorCode AbutBodyGetWork(AbutBody body, PetscReal *work)
   PetscCall(AbutBodyCreateReaction_Private(body, &reaction));
   PetscCall(VecDot(reaction, body->u, &w[2]));
   PetscCall(VecDestroy(&reaction));
-  *work = w[0] + w[1] + w[2];
+  PetscCall(AbutBodyGetFoundationForce_Private(body, force, &springs));
+  *work = w[0] + w[1] + w[2] + springs;
   if (body->initial) {
     PetscCall(AbutBodyInitialWork_Private(body, &w[0]));
     *work += w[0];

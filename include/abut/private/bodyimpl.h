@@ -23,13 +23,33 @@ typedef struct {
   PetscErrorCode (*stresses)(AbutBody, PetscInt, PetscInt, const PetscReal[], const PetscReal[], PetscReal[], PetscReal[]);
 } AbutCellOps;
 
-/* One of the strains that a body has without stress; see initial.c */
-typedef struct _n_AbutInitialStrain *AbutInitialStrain;
-struct _n_AbutInitialStrain {
-  char              *name;
-  AbutStrainFunction function;
-  void              *ctx;
-  AbutInitialStrain  next;
+/* One thing that acts on a body beside its conditions, see hooks.c */
+typedef enum {
+  ABUT_HOOK_FEATURE, /* only says that it is there */
+  ABUT_HOOK_FORCE,
+  ABUT_HOOK_TRACTION,
+  ABUT_HOOK_LOAD,
+  ABUT_HOOK_FOUNDATION,
+  ABUT_HOOK_OFFSET,
+  ABUT_HOOK_STRAIN
+} AbutHookType;
+typedef struct _n_AbutHook *AbutHook;
+struct _n_AbutHook {
+  AbutHookType  type;
+  char         *name; /* of who brought it */
+  PetscLogEvent event;
+  PetscInt      feature; /* ABUT_FEATURE_..., 0: none */
+  PetscInt      side;
+  PetscReal     stiffness[2]; /* of a foundation, normal and tangential, stress over length */
+  union {
+    AbutForceFunction    force;
+    AbutTractionFunction traction;
+    AbutLoadFunction     load;
+    AbutPointFunction    offset;
+    AbutStrainFunction   strain;
+  } call;
+  void    *ctx;
+  AbutHook next;
 };
 
 struct _p_AbutBody {
@@ -38,9 +58,10 @@ struct _p_AbutBody {
   AbutKinematics     kinematics;
   const AbutCellOps *cell;
   PetscReal          young, poisson, lambda, mu; /* lambda is that of the plane: another one in plane stress */
-  AbutInitialStrain  initial;                    /* NULL: none */
   AbutCondition      condition[ABUT_MAX_SIDES][2];
   PetscBool          meandilatation; /* in each cell: against locking */
+  AbutHook           hooks;          /* in the order they came; NULL: none */
+  PetscBool          initial;        /* initial strains are among them */
 
   /* of the present mesh */
   AbutElement   element;       /* what all cells share */
@@ -48,6 +69,7 @@ struct _p_AbutBody {
   Mat           A;             /* stiffness, rows and columns of prescribed unknowns replaced by mu on the diagonal */
   Mat           P;             /* what is preconditioned or factored: A, or if modes are free A on springs that resist them */
   Mat           Ac;            /* rows of the stiffness at the prescribed unknowns: for the lift and the reactions */
+  Mat           S;             /* stiffness of the foundations, part of A before that; NULL: none */
   IS            constrained;   /* owned prescribed unknowns, global numbers */
   Vec           prescribed;    /* their values, laid out like the rows of Ac */
   Vec           load, lift;    /* nodal forces of tractions and initial strains; -Ac^T times the prescribed values */
@@ -86,7 +108,6 @@ PETSC_INTERN PetscBool         AbutBodyOnAxis_Private(AbutBody, const PetscReal[
 PETSC_INTERN PetscErrorCode    AbutBodyInitialSetUp_Private(AbutBody);
 PETSC_INTERN PetscErrorCode    AbutBodySubtractInitial_Private(AbutBody, PetscInt, PetscInt, const PetscReal[], PetscReal[], PetscReal[]);
 PETSC_INTERN PetscErrorCode    AbutBodyInitialWork_Private(AbutBody, PetscReal *);
-PETSC_INTERN PetscErrorCode    AbutBodyInitialDestroy_Private(AbutBody);
 PETSC_INTERN PetscErrorCode    AbutBodyAssemble_Private(AbutBody);
 PETSC_INTERN const AbutCellOps AbutCellOps_Plane, AbutCellOps_Axisymmetric;
 PETSC_INTERN PetscErrorCode    AbutCellStresses_Plane(AbutBody, PetscInt, PetscInt, const PetscReal[], const PetscReal[], PetscReal[],
@@ -108,4 +129,14 @@ PETSC_INTERN PetscErrorCode    AbutBodyBoundaryReset_Private(AbutBody);
 PETSC_INTERN PetscErrorCode    AbutBodyGatherBoundary_Private(AbutBody, Vec, const PetscReal *[]);
 PETSC_INTERN PetscErrorCode    AbutBodyCreateReaction_Private(AbutBody, Vec *);
 PETSC_INTERN PetscErrorCode    AbutBodyUngatherBoundary_Private(AbutBody, const PetscReal *[]);
-PETSC_EXTERN PetscLogEvent     ABUTBODY_Assemble, ABUTBODY_Solve;
+PETSC_INTERN PetscErrorCode    AbutHooksDestroy_Private(AbutHook *);
+/* forces.c */
+PETSC_INTERN PetscErrorCode AbutBodyHookForces_Private(AbutBody);
+PETSC_INTERN PetscBool      AbutBodyHasTraction_Private(AbutBody, PetscInt, PetscInt);
+PETSC_INTERN PetscErrorCode AbutBodyHookTraction_Private(AbutBody, PetscInt, const PetscReal[2], const PetscReal[2], PetscReal[2]);
+/* foundation.c */
+PETSC_INTERN PetscErrorCode AbutBodyAssembleFoundation_Private(AbutBody);
+PETSC_INTERN PetscErrorCode AbutBodyHoldsSide_Private(AbutBody, PetscInt, PetscInt, PetscBool *);
+PETSC_INTERN PetscErrorCode AbutBodyGetFoundationForce_Private(AbutBody, PetscReal[2], PetscReal *);
+PETSC_INTERN PetscErrorCode AbutBodyAddFoundationTraction_Private(AbutBody, AbutBoundary *);
+PETSC_EXTERN PetscLogEvent  ABUTBODY_Assemble, ABUTBODY_Solve;
