@@ -59,20 +59,22 @@ PETSC_EXTERN PetscErrorCode AbutBodyAddTraction(AbutBody, const char[], PetscLog
 PETSC_EXTERN PetscErrorCode AbutBodyAddLoad(AbutBody, const char[], PetscLogEvent, AbutLoadFunction, void *);
 PETSC_EXTERN PetscErrorCode AbutBodyAddFoundation(AbutBody, const char[], PetscLogEvent, PetscInt, PetscReal, PetscReal);
 PETSC_EXTERN PetscErrorCode AbutBodyAddSideOffset(AbutBody, const char[], PetscLogEvent, PetscInt, AbutPointFunction, void *);
-PETSC_EXTERN PetscErrorCode AbutBodyAddInitialStrain(AbutBody, const char[], PetscLogEvent, AbutStrainFunction, void *);
+PETSC_EXTERN PetscErrorCode AbutBodyAddInitialStrain(AbutBody, const char[], PetscLogEvent, PetscBool, AbutStrainFunction, void *);
+PETSC_EXTERN PetscErrorCode AbutBodyGetInitialStrain(AbutBody, const PetscReal[2], PetscReal[4]);
 PETSC_EXTERN PetscErrorCode AbutBodyGetForce(AbutBody, const PetscReal[2], PetscReal[2]);
 PETSC_EXTERN PetscErrorCode AbutBodyGetFoundation(AbutBody, PetscInt, PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutBodyGetSideOffset(AbutBody, PetscInt, const PetscReal[2], PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutBodyHasSideOffset(AbutBody, PetscInt, PetscBool *);
 
 /* What an estimator may have to know of a body; it says which of them it can do, see AbutEstimatorSetFeatures() */
-#define ABUT_FEATURE_BODY_FORCE_CONSTANT 0x01
-#define ABUT_FEATURE_BODY_FORCE_VARYING  0x02
-#define ABUT_FEATURE_FOUNDATION          0x04 /* its tractions are in those of AbutBodyGetBoundary() */
-#define ABUT_FEATURE_INITIAL_STRAIN      0x08
-#define ABUT_FEATURE_AXISYMMETRIC        0x10
-#define ABUT_FEATURE_PLANE_STRESS        0x20
-#define ABUT_FEATURE_LOAD                0x40 /* nodal forces of which nothing more is known */
+#define ABUT_FEATURE_BODY_FORCE_CONSTANT   0x01
+#define ABUT_FEATURE_BODY_FORCE_VARYING    0x02
+#define ABUT_FEATURE_FOUNDATION            0x04 /* its tractions are in those of AbutBodyGetBoundary() */
+#define ABUT_FEATURE_INITIAL_STRAIN        0x08 /* one that is not linear */
+#define ABUT_FEATURE_AXISYMMETRIC          0x10
+#define ABUT_FEATURE_PLANE_STRESS          0x20
+#define ABUT_FEATURE_LOAD                  0x40 /* nodal forces of which nothing more is known */
+#define ABUT_FEATURE_INITIAL_STRAIN_LINEAR 0x80 /* linear in x and y: compatible, see AbutEstimatorGetParticular() */
 PETSC_EXTERN PetscErrorCode AbutBodyAddFeature(AbutBody, const char[], PetscInt);
 PETSC_EXTERN PetscErrorCode AbutBodyGetFeatures(AbutBody, PetscInt *);
 PETSC_EXTERN PetscErrorCode AbutBodyFindFeature(AbutBody, PetscInt, const char *[], const char *[]);

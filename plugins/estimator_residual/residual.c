@@ -127,7 +127,9 @@ static PetscErrorCode AbutEstimatorCreate_Residual(AbutEstimator est)
   PetscCall(PetscNew(&residual));
   PetscCall(AbutEstimatorSetData(est, residual));
   PetscCall(AbutEstimatorSetOps(est, &ops));
-  PetscCall(AbutEstimatorSetFeatures(est, ABUT_FEATURE_BODY_FORCE_CONSTANT | ABUT_FEATURE_BODY_FORCE_VARYING | ABUT_FEATURE_FOUNDATION));
+  PetscCall(AbutEstimatorSetFeatures(est, ABUT_FEATURE_BODY_FORCE_CONSTANT | ABUT_FEATURE_BODY_FORCE_VARYING | ABUT_FEATURE_FOUNDATION |
+                                            ABUT_FEATURE_PLANE_STRESS | ABUT_FEATURE_AXISYMMETRIC | ABUT_FEATURE_INITIAL_STRAIN |
+                                            ABUT_FEATURE_INITIAL_STRAIN_LINEAR));
   PetscCall(AbutEstimatorSetAbout(est, "what is left of equilibrium in cells, across their sides and on the boundary"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

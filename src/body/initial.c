@@ -3,8 +3,23 @@
 /* Strains that a body has without stress, as of its temperature: nodal forces int B' D eps0 in the load, stresses D (eps - eps0). With the
    mean dilatation of cells that of eps0 is a mean too. Gauss points: one more in each direction than the order, in triangles too. */
 
-/* The sum of all at a point, and their dilatation; a sheet gets thicker as it likes */
-static PetscErrorCode AbutBodyInitialStrain_Private(AbutBody body, const PetscReal x[2], PetscReal eps[4], PetscReal *dilatation)
+/*@C
+   AbutBodyGetInitialStrain - The strain that a body has without stress at a point
+
+   Not Collective
+
+   Input Parameters:
++  body - the body
+-  x    - [2] the point
+
+   Output Parameter:
+.  eps - [4] e11, e22, e12, e33: the sum of what `AbutBodyAddInitialStrain()` added; in plane stress e33 = 0, as it makes no stress
+
+   Level: advanced
+
+.seealso: `AbutBodyAddInitialStrain()`
+@*/
+PetscErrorCode AbutBodyGetInitialStrain(AbutBody body, const PetscReal x[2], PetscReal eps[4])
 {
   PetscFunctionBegin;
   for (PetscInt i = 0; i < 4; ++i) eps[i] = 0.;
@@ -16,7 +31,27 @@ static PetscErrorCode AbutBodyInitialStrain_Private(AbutBody body, const PetscRe
     for (PetscInt i = 0; i < 4; ++i) eps[i] += one[i];
   }
   if (body->kinematics == ABUT_PLANE_STRESS) eps[3] = 0.;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutBodyInitialStrain_Private(AbutBody body, const PetscReal x[2], PetscReal eps[4], PetscReal *dilatation)
+{
+  PetscFunctionBegin;
+  *dilatation = 0.;
+  PetscCall(AbutBodyGetInitialStrain(body, x, eps));
   *dilatation = eps[0] + eps[1] + eps[3];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The hooks that bring them begin or end what is logged */
+static PetscErrorCode AbutBodyLogInitial_Private(AbutBody body, PetscBool begin)
+{
+  PetscFunctionBegin;
+  for (AbutHook h = body->hooks; h; h = h->next) {
+    if (h->type != ABUT_HOOK_STRAIN) continue;
+    if (begin) PetscCall(PetscLogEventBegin(h->event, body, 0, 0, 0));
+    else PetscCall(PetscLogEventEnd(h->event, body, 0, 0, 0));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -106,6 +141,7 @@ PetscErrorCode AbutBodyInitialSetUp_Private(AbutBody body)
   PetscReal               f[2 * ABUT_CELL_NODES_MAX], energy = 0.;
 
   PetscFunctionBegin;
+  PetscCall(AbutBodyLogInitial_Private(body, PETSC_TRUE));
   PetscCall(AbutMeshGetTopology(body->mesh, &t));
   PetscCall(AbutBodyCreateVec(body, &body->initialload));
   PetscCall(AbutInitialRuleCreate_Private(body->mesh, &rule));
@@ -118,6 +154,7 @@ PetscErrorCode AbutBodyInitialSetUp_Private(AbutBody body)
   PetscCall(VecAssemblyEnd(body->initialload));
   PetscCallMPI(MPI_Allreduce(&energy, &body->initialenergy, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
   PetscCall(VecAXPY(body->load, 1., body->initialload));
+  PetscCall(AbutBodyLogInitial_Private(body, PETSC_FALSE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

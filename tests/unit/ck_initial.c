@@ -74,7 +74,7 @@ START_TEST(free_expansion_has_no_stress)
     AbutBody  body  = CkBodyOfOrder(_i, &field, kinematics, 0., 0., 2., 1., 3);
     PetscReal value[7], from[7], reaction[2], applied[2];
 
-    CkOk(AbutBodyAddInitialStrain(body, "heat", 0, Expand, &heat));
+    CkOk(AbutBodyAddInitialStrain(body, "heat", 0, PETSC_FALSE, Expand, &heat));
     CkOk(AbutBodySolve(body, NULL));
     CkOk(AbutBodyGetPointValues(body, corner, value));
     ck_assert_double_eq_tol(LargestStress(body), across, 2e-8 * CK_YOUNG * ALPHA * 100.); /* round-off at an axis, nu = .495: 5e-9 */
@@ -112,7 +112,7 @@ START_TEST(a_clamped_bar_has_the_stress_of_the_formula)
     AbutBody  body  = CkBodyOfOrder(_i, &field, kinematics, 0., 0., 2., 1., 3);
     PetscReal value[7], volume = kinematics == ABUT_AXISYMMETRIC ? 4. * pi : 2., reaction[2], applied[2];
 
-    CkOk(AbutBodyAddInitialStrain(body, "heat", 0, Expand, &heat));
+    CkOk(AbutBodyAddInitialStrain(body, "heat", 0, PETSC_FALSE, Expand, &heat));
     CkOk(AbutBodySetDisplacement(body, "bottom", 1, Nothing, NULL));
     CkOk(AbutBodySetDisplacement(body, "top", 1, Nothing, NULL));
     if (kinematics != ABUT_AXISYMMETRIC) CkOk(AbutBodySetDisplacement(body, "left", 0, Nothing, NULL));
@@ -153,7 +153,7 @@ START_TEST(a_linear_temperature_bends_a_strip_without_stress)
     AbutBody  body  = CkBodyOfOrder(_i, &field, kinematics, 0., -0.25, 4., 0.25, 8);
     PetscReal v[3][7], across = k ? 0. : CK_YOUNG * ALPHA * (20. + 40. + 0.25 * b);
 
-    CkOk(AbutBodyAddInitialStrain(body, "heat", 0, Expand, &heat));
+    CkOk(AbutBodyAddInitialStrain(body, "heat", 0, PETSC_FALSE, Expand, &heat));
     CkRefine(CkMeshOf(body), CkEverywhere, order == 1 ? 2 : 0);
     CkOk(AbutBodySolve(body, NULL));
     for (PetscInt i = 0; i < 3; ++i) CkOk(AbutBodyGetPointValues(body, end[i], v[i]));
@@ -195,7 +195,7 @@ START_TEST(a_hot_tube_has_the_stresses_of_the_formula)
   AbutBody  body  = CkBodyOfOrder(_i, &field, ABUT_AXISYMMETRIC, 1., 0., 2., 0.5, 4);
   PetscReal error[2], u[2], s[4];
 
-  CkOk(AbutBodyAddInitialStrain(body, "heat", 0, Expand, &heat));
+  CkOk(AbutBodyAddInitialStrain(body, "heat", 0, PETSC_FALSE, Expand, &heat));
   CkOk(AbutBodySetDisplacement(body, "bottom", 1, Nothing, NULL));
   CkOk(AbutBodySetDisplacement(body, "top", 1, Nothing, NULL));
   for (PetscInt i = 0; i < 2; ++i) {
@@ -230,8 +230,8 @@ START_TEST(several_strains_add_up)
                           -lambda * trace - 2. * mu * e[3]};
   PetscReal       value[7];
 
-  CkOk(AbutBodyAddInitialStrain(body, "heat", 0, Expand, &heat));
-  CkOk(AbutBodyAddInitialStrain(body, "skew", 0, Skew, NULL));
+  CkOk(AbutBodyAddInitialStrain(body, "heat", 0, PETSC_FALSE, Expand, &heat));
+  CkOk(AbutBodyAddInitialStrain(body, "skew", 0, PETSC_FALSE, Skew, NULL));
   for (PetscInt side = 0; side < 4; ++side)
     for (PetscInt d = 0; d < 2; ++d) {
       static const char *const names[] = {"left", "right", "bottom", "top"};
