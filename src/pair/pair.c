@@ -454,7 +454,7 @@ PetscErrorCode AbutPairGetCompliance(AbutPair pair, PetscReal compliance[2])
     PetscCall(AbutBodyGetMesh(pair->body[s], &mesh));
     PetscCall(AbutMeshGetSideDirection(mesh, pair->side[s], normal));
     PetscCall(AbutBodyGetHeight(pair->body[s], normal, &height));
-    PetscCall(AbutBodyGetMaterial(pair->body[s], &young, &poisson));
+    PetscCall(AbutBodyGetPlaneMaterial(pair->body[s], &young, &poisson));
     compliance[s] = height * (1. - poisson * poisson) / young;
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -191,8 +191,12 @@ PetscErrorCode AbutPairFace_Private(AbutPair pair, const PetscInt element[2], Pe
       y[1]  = p[1] + share * d[1];
     }
   }
+  if (!pair->obstacle && (pair->gap || pair->straight)) {
+    PetscCall(AbutPairGetGap(pair, x, gap));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   if (pair->obstacle) PetscCall(AbutPairObstacleGap_Private(pair, x, normal, gap));
-  else if (pair->gap || pair->straight) PetscCall(AbutPairGetGap(pair, x, gap));
   else PetscCall(AbutPairCurvedGap_Private(pair, x, y, normal, gap));
+  PetscCall(AbutPairCloseGap_Private(pair, x, gap));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

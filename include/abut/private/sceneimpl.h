@@ -51,8 +51,9 @@ typedef enum {
 
 struct _p_AbutScene {
   PETSCHEADER(int);
-  PetscInt      nbodies, npairs, nprobes;
+  PetscInt      nbodies, npairs, nprobes, neffects;
   AbutBody      body[ABUT_MAX_NAMES];
+  AbutEffect    effect[ABUT_MAX_NAMES];
   AbutPair      pair[ABUT_MAX_NAMES];
   AbutProbe     probe[ABUT_MAX_NAMES];
   PetscBool     estimates[ABUT_MAX_NAMES]; /* bodies whose error is estimated, and adapted if there is an adaptor */
