@@ -63,3 +63,18 @@ def test_restart_goes_on_against_an_obstacle():
         whole = disc(*key, "-checkpoint", file)
         again = disc(*key, "-restart", file)
     assert again["pair.foot.force"] == whole["pair.foot.force"] and again["cycles"] == whole["cycles"]
+
+
+ROUND = "-scene_effects", "round", "-round_effect_type", "axisymmetric"
+
+
+def test_a_rigid_ball_presses_as_hertz_says():
+    """a^3 = 3FR/(4E'), p0 = 3F/(2 pi a^2), F of the whole turn; a/R is 0.036"""
+    off = []
+    for order, target in (1, 0.04), (2, 0.01):
+        record = disc(*ROUND, "-foot_pair_obstacle", f"sqrt(x^2+(y-{RADIUS})^2)-{RADIUS}", "-block_mesh_order", order, "-estimator_type", "residual",
+                      "-adaptor_target", target, up=0.01)
+        a = (3 * record["pair.foot.force"] * RADIUS / (4 * STIFF)) ** (1 / 3)
+        off.append((record["pair.foot.contact_edge"] / a - 1, record["pair.foot.pressure_max"] / (3 * record["pair.foot.force"] / (2 * math.pi * a * a)) - 1))
+    case("V07", "radius of the contact with a rigid ball off Hertz, orders 1 and 2", max(abs(a) for a, p in off), 0.01)
+    case("V07", "largest pressure under a rigid ball off Hertz, orders 1 and 2", max(abs(p) for a, p in off), 0.01)
