@@ -31,6 +31,8 @@ PETSC_EXTERN PetscErrorCode AbutBodySetDisplacement(AbutBody, const char[], Pets
 PETSC_EXTERN PetscErrorCode AbutBodySetTraction(AbutBody, const char[], PetscInt, AbutPointFunction, void *);
 PETSC_EXTERN PetscErrorCode AbutBodySetContact(AbutBody, PetscInt);
 PETSC_EXTERN PetscErrorCode AbutBodyGetCondition(AbutBody, PetscInt, PetscInt, AbutConditionType *);
+PETSC_EXTERN PetscErrorCode AbutBodySetLoadFactor(AbutBody, PetscReal);
+PETSC_EXTERN PetscErrorCode AbutBodyGetLoadFactor(AbutBody, PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutBodySetFromOptions(AbutBody);
 PETSC_EXTERN PetscErrorCode AbutBodyCheck(AbutBody);
 PETSC_EXTERN PetscErrorCode AbutBodySetUp(AbutBody);

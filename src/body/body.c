@@ -53,6 +53,7 @@ PetscErrorCode AbutBodyCreate(MPI_Comm comm, const char name[], AbutBody *body)
   PetscCall(PetscObjectSetName((PetscObject)*body, name));
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", name));
   PetscCall(PetscObjectSetOptionsPrefix((PetscObject)*body, prefix));
+  (*body)->factor     = 1.;
   (*body)->generation = -1;
   PetscCall(AbutMeshCreate(comm, &(*body)->mesh));
   PetscCall(PetscObjectSetOptionsPrefix((PetscObject)(*body)->mesh, prefix));

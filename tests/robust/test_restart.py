@@ -14,6 +14,7 @@ FOLLOWED = (EXACT, "-lower_mesh_order 3 -upper_mesh_order 3 -adaptor_target 1e-3
 TRIANGLES = (EXACT, "-lower_mesh_order 2 -upper_mesh_order 2 -lower_mesh_shape triangle -upper_mesh_cells 6,2 -adaptor_target 5e-3")
 MERGED = (EXACT, "-lower_mesh_shape triangle -lower_mesh_cells 3,1 -upper_mesh_cells 3,1 -adaptor_jump 8 -adaptor_target 5e-3 -adaptor_coarsen 0.2")
 INTERLEAVED = (LAYERS, "-adaptor_threshold 0.2 -scene_interleave yes -snes_type ddneumann")
+STEPPED = (EXACT, "-adaptor_target 2e-2 -scene_load_steps 0.5,1,0,0.7,-1,1 -lower_ksp_type cg -lower_pc_type jacobi -lower_ksp_rtol 1e-10")
 STAYING = (INTERLEAVED[0], INTERLEAVED[1] + " -scene_eps_u 5e-4 -upper_mesh_cells 16,4")  # whose last cycles are on the same meshes
 COUNTED = re.compile(r"time\.|memory|residual|balance|complementarity|penetration|check|error\.loop|error\.linear|slack")
 
@@ -47,6 +48,34 @@ def test_a_run_that_goes_on_ends_as_if_it_had_not_been_stopped():
             assert len(rows) == len(cycles)
             for row, before in zip(rows, cycles):
                 same(before, row, 0)
+
+
+def test_a_run_of_load_steps_goes_on_within_and_between_them():
+    """From every cycle; and with steps to come that are others than the run began with"""
+    with tempfile.TemporaryDirectory() as folder:
+        whole, cycles = stopped(folder, STEPPED)
+        steps = [row["step"] for row in cycles]
+        assert len(set(steps)) == 6 and len(steps) > 8, steps
+        for every in range(1, len(cycles)):
+            stopped(folder, STEPPED, every=every)
+            on = run(*STEPPED, f"-restart {folder}/last -record_csv {folder}/on.csv")
+            same(whole, on, 0)
+            for row, before in zip(read_csv(f"{folder}/on.csv"), cycles):
+                same(before, row, 0)
+        same(whole, run(*STEPPED, f"-restart {folder}/last", ranks=3), 1e-7)
+        line = run_error(STEPPED[0], STEPPED[1].replace("0.5,1,0,0.7,-1,1", "0.5,1"), f"-restart {folder}/last")
+        assert "restart: the checkpoint stands in load step 6, and scene_load_steps has 2" in line, line
+        assert "scene_load_steps has 0" in run_error(EXACT, "-adaptor_target 2e-2", f"-restart {folder}/last")
+
+
+def test_steps_without_an_adaptor_go_on():
+    with open(LAYERS) as f, tempfile.TemporaryDirectory() as folder:
+        fixed = f"{folder}/fixed.yml"
+        with open(fixed, "w") as out:
+            out.writelines(line for line in f if not line.startswith(("adaptor:", "estimator:", "snes:")))
+        scene = (fixed, "-scene_load_steps 0.5,0,1")
+        whole, _ = stopped(folder, scene)
+        same(whole, run(*scene, f"-restart {folder}/last"), 0)
 
 
 def test_on_any_number_of_ranks():

@@ -21,6 +21,7 @@ struct _p_AbutBody {
   AbutMesh      mesh;
   PetscReal     young, poisson, lambda, mu;
   AbutCondition condition[ABUT_MAX_SIDES][2];
+  PetscReal     factor;         /* of all that is prescribed */
   PetscBool     meandilatation; /* in each cell: against locking */
 
   /* of the present mesh */
@@ -57,6 +58,7 @@ struct _p_AbutBody {
 
 PETSC_INTERN PetscErrorCode AbutBodySetConditionsFromOptions_Private(AbutBody, AbutOptionItems, char[], size_t);
 PETSC_INTERN PetscErrorCode AbutBodyConditionsSetUp_Private(AbutBody);
+PETSC_INTERN PetscErrorCode AbutBodyLift_Private(AbutBody);
 PETSC_INTERN PetscErrorCode AbutBodyEdgeMoments_Private(AbutBody, PetscInt, PetscInt, const PetscReal[2], const PetscReal[2], PetscReal[]);
 PETSC_INTERN PetscErrorCode AbutBodyAssemble_Private(AbutBody);
 PETSC_INTERN PetscErrorCode AbutElementCreate_Private(AbutMesh, AbutElement *);
