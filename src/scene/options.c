@@ -276,6 +276,7 @@ PetscErrorCode AbutSceneSetFromOptions(AbutScene scene)
                  "output_profile: the scene has no pair to make a profile of; give scene_pairs, or leave it out");
   PetscCall(AbutRecorderCreate(comm, &scene->recorder));
   PetscCall(AbutRecorderSetFromOptions(scene->recorder));
+  PetscCall(AbutRecorderSetPairs(scene->recorder, scene->iface, scene->npairs, scene->pair));
   PetscCall(AbutSceneCheckpointFromOptions_Private(scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

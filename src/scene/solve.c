@@ -187,13 +187,15 @@ static PetscBool AbutSceneEnds_Private(AbutScene scene, PetscBool converged, Pet
   return PETSC_TRUE;
 }
 
-static PetscErrorCode AbutSceneOutput_Private(AbutScene scene)
+/* last: of the run, or of its step */
+static PetscErrorCode AbutSceneOutput_Private(AbutScene scene, PetscBool last)
 {
   PetscBool wants;
 
   PetscFunctionBegin;
   PetscCall(AbutRecorderEndCycle(scene->recorder));
   if (scene->snes) PetscCall(AbutRecorderWriteCycleProfile(scene->recorder, scene->cycle, scene->iface, scene->npairs, scene->pair));
+  if (scene->snes && last) PetscCall(AbutRecorderWriteProfile(scene->recorder, scene->iface, scene->npairs, scene->pair));
   PetscCall(AbutRecorderWantsFields(scene->recorder, &wants));
   if (wants) PetscCall(AbutRecorderWriteFields(scene->recorder, scene->cycle, scene->nbodies, scene->body, scene->eta));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -297,7 +299,7 @@ PetscErrorCode AbutSceneSolve(AbutScene scene)
     PetscCall(AbutRecorderSetString(scene->recorder, "verdict", scene->verdict));
     PetscCall(AbutSceneRecordTimes_Private(scene));
     PetscCall(AbutScenePrintCycle_Private(scene, nmarked));
-    PetscCall(AbutSceneOutput_Private(scene));
+    PetscCall(AbutSceneOutput_Private(scene, (PetscBool)(ends || next)));
     PetscCall(AbutSceneClock_Private(scene, ABUT_TIME_OUTPUT));
     if (next) PetscCall(AbutSceneNextStep_Private(scene));
     else if (!ends && adapt == ABUT_ADAPT_REFINED) PetscCall(AbutSceneAdapt_Private(scene, marks));
@@ -305,8 +307,6 @@ PetscErrorCode AbutSceneSolve(AbutScene scene)
     PetscCall(AbutSceneClock_Private(scene, ABUT_TIME_ADAPT));
     if (!ends) PetscCall(AbutSceneCheckpoint_Private(scene));
   }
-  if (scene->snes) PetscCall(AbutRecorderWriteProfile(scene->recorder, scene->iface, scene->npairs, scene->pair));
-  PetscCall(AbutSceneClock_Private(scene, ABUT_TIME_OUTPUT));
   PetscCall(AbutSceneRecordTimes_Private(scene));
   PetscCall(AbutSceneRecordRatio_Private(scene));
   PetscCall(AbutRecorderWrite(scene->recorder));

@@ -55,6 +55,7 @@ PetscErrorCode AbutSceneRecordStep_Private(AbutScene scene)
   PetscCall(AbutRecorderSetInt(scene->recorder, "steps", scene->nsteps));
   PetscCall(AbutRecorderSetInt(scene->recorder, "step", scene->step + 1));
   PetscCall(AbutRecorderSetReal(scene->recorder, "load_factor", scene->factor[scene->step]));
+  PetscCall(AbutRecorderSetStep(scene->recorder, scene->step + 1, scene->factor[scene->step]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

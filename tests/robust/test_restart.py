@@ -101,6 +101,8 @@ def test_fields_that_went_on_are_those_of_the_whole_run():
                     if ranks == 1:
                         bits += open(mine).read() != open(other).read()
                         keys = max(keys, sum(on[key] != whole[key] for key in whole if not key.startswith(("time.", "memory"))))
+                    if file.endswith(".vtp"):
+                        continue
                     moved, eta = map(farthest, read_values(mine), read_values(other))  # which need the same meshes
                     off = max(off, moved)
                     assert eta < 1e-10, (file, eta)  # of differences of stresses
