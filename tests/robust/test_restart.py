@@ -155,21 +155,21 @@ def test_a_run_that_is_killed_loses_no_cycle_that_it_has_finished():
 
 def test_fields_and_rows_go_on_too():
     with tempfile.TemporaryDirectory() as folder:
-        for kind in "xdmf", "vtu":
+        for scene, kind in (FOLLOWED, "xdmf"), (FOLLOWED, "vtu"), (STEPPED, "xdmf"), (STEPPED, "vtu"):
             out = f"-output {folder}/run.{kind}"
-            run(*FOLLOWED, out, f"-checkpoint {folder}/last")
+            run(*scene, out, f"-checkpoint {folder}/last")
             index = f"{folder}/run." + {"xdmf": "xdmf", "vtu": "pvd"}[kind]
             with open(index) as f:
                 before = f.read()
             os.remove(index)
-            run(*FOLLOWED, out, f"-restart {folder}/last")
+            run(*scene, out, f"-restart {folder}/last")
             with open(index) as f:
                 assert f.read() == before, kind
-            run(*FOLLOWED, f"-output {folder}/other.{kind}", f"-restart {folder}/last")
+            run(*scene, f"-output {folder}/other.{kind}", f"-restart {folder}/last")
             with open(f"{folder}/other." + index.split(".")[-1]) as f:
                 cycles = re.findall(r"cycle_(\d+)\"|timestep=\"(\d+)\"", f.read())
             assert len(set(cycles)) == 1, cycles  # only the last one
-            run(*FOLLOWED, f"-restart {folder}/last")
+            run(*scene, f"-restart {folder}/last")
 
 
 def test_files_that_are_no_checkpoint_of_this_scene_are_refused():

@@ -4,8 +4,8 @@
 #include <petsc/private/petscimpl.h>
 
 /* The fields of one body, numbered over all ranks: row g of a vertex field is the vertex with global number g, hanging vertices follow.
-   A hanging vertex on a cut between ranks has a row for each of them. Or the fields of a side of a pair, whose cells have two corners; those
-   that it does not have are NULL, as are those of a side in a body. */
+   A hanging vertex on a cut between ranks has a row for each of them. Or the fields of a side of a pair, whose cells have two corners. What
+   a body, or a side, does not have is NULL. */
 typedef struct {
   PetscInt nvertices, ncells; /* over all ranks */
   PetscInt corners;
