@@ -53,6 +53,7 @@ PetscErrorCode AbutBodyCreate(MPI_Comm comm, const char name[], AbutBody *body)
   PetscCall(PetscObjectSetName((PetscObject)*body, name));
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", name));
   PetscCall(PetscObjectSetOptionsPrefix((PetscObject)*body, prefix));
+  (*body)->factor     = 1.;
   (*body)->generation = -1;
   (*body)->cell       = &AbutCellOps_Plane;
   PetscCall(AbutMeshCreate(comm, &(*body)->mesh));
@@ -194,8 +195,7 @@ PetscErrorCode AbutBodySetUp(AbutBody body)
   PetscCall(VecDuplicate(body->load, &body->rhs));
   PetscCall(AbutBodyBoundarySetUp_Private(body));
   PetscCall(AbutBodyConditionsSetUp_Private(body));
-  PetscCall(AbutBodyHookForces_Private(body));
-  if (body->initial) PetscCall(AbutBodyInitialSetUp_Private(body));
+  PetscCall(AbutBodyLoadsSetUp_Private(body));
   PetscCall(AbutBodyAssemble_Private(body));
   PetscCall(AbutBodyModesSetUp_Private(body));
   PetscCall(AbutBodyChooseSolver_Private(body, 2 * t->nglobal, PETSC_FALSE));

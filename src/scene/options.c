@@ -252,6 +252,7 @@ static PetscErrorCode AbutSceneCheckContactKeys_Private(AbutScene scene)
 .  -record_time_ratio       - measures the processor time of the run in linear problems on its last mesh: `time.ratio`
 .  -scene_cold              - with an adaptor: every mesh begins without the traces and forces of the last one
 .  -scene_eps_u <0.0015>   - with it: the relative change of the traces at which the run ends
+.  -scene_load_steps <f1,f2,...> - factors of all that is prescribed, one load step for each, see `AbutSceneSolve()`
 .  -scene_tol T            - relative error in the energy norm to be reached: chooses theta, tolerances and refinement, see below
 .  -adaptor_type, -estimator_type, -snes_* - what adapts, estimates, iterates; see `AbutAdaptorCreate()`, `AbutEstimatorCreate()`,
                                              `SNESDDNEUMANN`
@@ -285,6 +286,7 @@ PetscErrorCode AbutSceneSetFromOptions(AbutScene scene)
   PetscCall(AbutOptionsReal(PetscOptionsObject, "-scene_tol", "Relative error in the energy norm to be reached", &scene->tol, &hastol));
   PetscCall(AbutOptionsBool(PetscOptionsObject, "-record_time_ratio", "Processor time in linear problems on the last mesh",
                             &scene->wantsratio, NULL));
+  PetscCall(AbutSceneStepsFromOptions_Private(scene, PetscOptionsObject));
   PetscCall(PetscOptionsString("-adaptor_type", "Type of the adaptor", NULL, type, type, sizeof(type), &adapts));
   PetscCall(PetscOptionsString("-estimator_type", "Type of the estimator", NULL, type, type, sizeof(type), &estimates));
   PetscOptionsEnd();
@@ -308,6 +310,7 @@ PetscErrorCode AbutSceneSetFromOptions(AbutScene scene)
                  "output_profile: the scene has no pair to make a profile of; give scene_pairs, or leave it out");
   PetscCall(AbutRecorderCreate(comm, &scene->recorder));
   PetscCall(AbutRecorderSetFromOptions(scene->recorder));
+  PetscCall(AbutRecorderSetPairs(scene->recorder, scene->iface, scene->npairs, scene->pair));
   PetscCall(AbutSceneCheckpointFromOptions_Private(scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

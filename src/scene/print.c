@@ -122,8 +122,9 @@ static PetscErrorCode AbutScenePrintCost_Private(AbutScene scene)
                         scene->seconds[ABUT_TIME_ADAPT], scene->seconds[ABUT_TIME_OUTPUT]));
   PetscCall(AbutSceneGetUnknowns_Private(scene, &unknowns));
   if (scene->snes && !scene->interleave && scene->cycle > 1)
-    PetscCall(PetscPrintf(comm, "sweeps: %" PetscInt_FMT " on %" PetscInt_FMT " meshes, worth %.1f of the last mesh\n", scene->sweepsbefore,
-                          scene->cycle, (double)(scene->work / unknowns)));
+    PetscCall(PetscPrintf(comm, "sweeps: %" PetscInt_FMT " %s %" PetscInt_FMT " %s, worth %.1f of the last mesh\n", scene->sweepsbefore,
+                          scene->nsteps ? "in" : "on", scene->cycle, scene->nsteps ? "cycles" : "meshes",
+                          (double)(scene->work / unknowns)));
   PetscCall(PetscPrintf(comm, "element matrices and their insertion: %.2f microseconds a cell (%" PetscInt_FMT " cells)\n",
                         assembled ? (double)(1e6 * assembly / assembled) : 0., assembled));
   if (scene->ratio > 0.)

@@ -227,6 +227,7 @@ PetscErrorCode AbutSceneRecord_Private(AbutScene scene, PetscBool last, PetscBoo
   PetscFunctionBegin;
   PetscCall(AbutRecorderSetString(scene->recorder, "verdict", scene->verdict));
   PetscCall(AbutRecorderSetInt(scene->recorder, "cycles", scene->cycle + 1));
+  PetscCall(AbutSceneRecordStep_Private(scene));
   PetscCall(AbutSceneRecordSweeps_Private(scene));
   AbutSceneBeginChecks_Private(scene);
   PetscCall(AbutSceneRecordBodies_Private(scene));
