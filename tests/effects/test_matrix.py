@@ -17,6 +17,9 @@ EFFECTS = [
     Effect("pressure", "AbutPressure", "-e_effect_bodies lower -e_effect_side right -e_effect_pressure 3"),
     Effect("spring", "AbutSpring", "-e_effect_bodies lower -e_effect_side right -e_effect_normal 1e3"),
     Effect("overlap", "AbutOverlap", "-e_effect_bodies upper -e_effect_side bottom -e_effect_depth 1e-4"),
+    Effect("thermal", "AbutThermal", "-e_effect_temperature 10*y -e_effect_expansion 1e-5"),
+    Effect("plane_stress", "AbutPlane_stress", "-e_effect_bodies lower"),
+    Effect("axisymmetric", "AbutAxisymmetric", ""),
 ]
 TIMES = re.compile("^(time|memory)[.]")
 
@@ -68,9 +71,9 @@ def test_without_effects_a_run_is_the_same_to_the_last_bit_and_byte():
     one, two = solve(), solve()
     assert one[3] == two[3] and one[2] == two[2] and one[1] == two[1]
     for effect in EFFECTS:
-        key = effect.keys.split()[0][1:]
+        key, wrong = (effect.keys.split()[0][1:], "these keys") if effect.keys else ("e_effect_type", "this key")
         line = run_error(None, *BLOCKS.split(), *f"-e_effect_type {effect.type} {effect.keys}".split())
-        assert "e_effect_type" in line and key in line and "nothing in this scene reads these keys" in line, line
+        assert "e_effect_type" in line and key in line and f"nothing in this scene reads {wrong}" in line, line
 
 
 def test_two_effects_of_a_type_share_its_event():
