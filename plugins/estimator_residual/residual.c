@@ -35,6 +35,9 @@
    Where the pressure of a sharp punch ends: .57, .61, .80, .97 and .61, .62, .75, on four meshes. Cells 16 and 32 times as long as wide,
    along either axis: .85-1.5, but 2.8 for quads of order 1 across the direction of the error. Poisson's ratio from 0 to .4999: .6 to 1.3.
 
+   Bodies of revolution, a smooth solution that has an axis: .83-1.10, .99-1.24, 1.11-1.46, 1.10-1.38 with orders 1 to 4. An initial strain
+   that varies inside cells of order 1: .44-.68.
+
    Limits: no nodal forces but those of tractions, contact and springs. Given tractions count by their L2 projection on the elements, so
    that what a mesh does not see of them is no error. A locked stress, triangles of order 1 at Poisson's ratios above .49, leaves little of
    a residual: the estimate is then far too small. The two bodies of a pair are judged one by one: penetration between nodes, or a pressure
