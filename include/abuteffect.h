@@ -15,11 +15,14 @@
 S*/
 typedef struct _p_AbutEffect *AbutEffect;
 typedef const char           *AbutEffectType;
-#define ABUTEFFECTGRAVITY  "gravity"  /* weight */
-#define ABUTEFFECTFORCE    "force"    /* a force per volume */
-#define ABUTEFFECTPRESSURE "pressure" /* normal to a side */
-#define ABUTEFFECTSPRING   "spring"   /* a side on springs */
-#define ABUTEFFECTOVERLAP  "overlap"  /* a side that stands out */
+#define ABUTEFFECTGRAVITY      "gravity"      /* weight */
+#define ABUTEFFECTFORCE        "force"        /* a force per volume */
+#define ABUTEFFECTPRESSURE     "pressure"     /* normal to a side */
+#define ABUTEFFECTSPRING       "spring"       /* a side on springs */
+#define ABUTEFFECTOVERLAP      "overlap"      /* a side that stands out */
+#define ABUTEFFECTTHERMAL      "thermal"      /* expansion */
+#define ABUTEFFECTPLANESTRESS  "plane_stress" /* thin sheets */
+#define ABUTEFFECTAXISYMMETRIC "axisymmetric" /* bodies of revolution */
 
 /* What a type fills in and hands to AbutEffectSetOps() in its create routine */
 typedef struct {

@@ -62,7 +62,7 @@ static PetscErrorCode AbutEstimatorEstimate_Fembem(AbutEstimator est, AbutBody b
 
   PetscFunctionBegin;
   PetscCall(AbutEstimatorGetData(est, &fembem));
-  PetscCall(AbutBodyGetMaterial(body, &young, &poisson));
+  PetscCall(AbutBodyGetPlaneMaterial(body, &young, &poisson));
   PetscCall(AbutBodyGetBoundary(body, &given));
   PetscCall(FembemTakeOffForce(body, given));
   PetscCall(FembemBoundaryCreate(comm, given, young, poisson, &boundary));
@@ -149,7 +149,8 @@ static PetscErrorCode AbutEstimatorCreate_Fembem(AbutEstimator est)
   fembem->max_elements = 4000;
   PetscCall(AbutEstimatorSetData(est, fembem));
   PetscCall(AbutEstimatorSetOps(est, &ops));
-  PetscCall(AbutEstimatorSetFeatures(est, ABUT_FEATURE_BODY_FORCE_CONSTANT | ABUT_FEATURE_FOUNDATION));
+  PetscCall(AbutEstimatorSetFeatures(est, ABUT_FEATURE_BODY_FORCE_CONSTANT | ABUT_FEATURE_FOUNDATION | ABUT_FEATURE_PLANE_STRESS |
+                                            ABUT_FEATURE_INITIAL_STRAIN_LINEAR));
   PetscCall(AbutEstimatorSetAbout(est, "stress of boundary elements on the trace of the mesh, eq. (27) of the paper"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -2,8 +2,9 @@
 #include "fembemimpl.h"
 #include <petscdt.h>
 
-/* A constant body force: the boundary elements judge what is left when a stress that balances it is taken off, with its tractions and its
-   displacement. The nodal forces of the tractions are taken off those that hold the body, component by component. */
+/* A constant body force, an initial strain that is linear: the boundary elements judge what is left when a stress that balances the one is
+   taken off, with its tractions and its displacement, and the displacement that frees of the other. The nodal forces of the tractions are
+   taken off those that hold the body, component by component. */
 
 /* Outward normal of boundary element e, times its length */
 static void GetNormal(const AbutBoundary *b, PetscInt e, PetscReal n[2])
@@ -62,7 +63,7 @@ PetscErrorCode FembemTakeOffForce(AbutBody body, AbutBoundary *b)
 
   PetscFunctionBegin;
   PetscCall(AbutBodyGetFeatures(body, &features));
-  if (!(features & ABUT_FEATURE_BODY_FORCE_CONSTANT)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!(features & (ABUT_FEATURE_BODY_FORCE_CONSTANT | ABUT_FEATURE_INITIAL_STRAIN_LINEAR))) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt e = 0; e < b->n; ++e) PetscCall(TakeOffElement(body, e, b));
   for (PetscInt i = 0; i < b->nnodes; ++i) {
     PetscReal u[2], s[3];

@@ -140,7 +140,8 @@ static PetscErrorCode AbutEstimatorCreate_ZZ(AbutEstimator est)
   PetscCall(PetscNew(&zz));
   PetscCall(AbutEstimatorSetData(est, zz));
   PetscCall(AbutEstimatorSetOps(est, &ops));
-  PetscCall(AbutEstimatorSetFeatures(est, ABUT_FEATURE_BODY_FORCE_CONSTANT | ABUT_FEATURE_FOUNDATION));
+  PetscCall(AbutEstimatorSetFeatures(est, ABUT_FEATURE_BODY_FORCE_CONSTANT | ABUT_FEATURE_FOUNDATION | ABUT_FEATURE_PLANE_STRESS |
+                                            ABUT_FEATURE_INITIAL_STRAIN_LINEAR));
   PetscCall(AbutEstimatorSetAbout(est, "stress recovered from patches of cells, Zienkiewicz and Zhu (1992)"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

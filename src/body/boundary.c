@@ -258,7 +258,7 @@ PetscErrorCode AbutBodyCreateReaction_Private(AbutBody body, Vec *reaction)
 .  body - the body, solved
 
    Output Parameters:
-+  reaction - [2] sum of the reactions, those of springs too, stress times length
++  reaction - [2] sum of the reactions, those of springs too, stress times length; with axial symmetry over the circumference, 0 along x
 -  applied  - [2] sum of loads and contact forces; in equilibrium the two cancel
 
    Level: intermediate
@@ -280,6 +280,7 @@ PetscErrorCode AbutBodyGetReaction(AbutBody body, PetscReal reaction[2], PetscRe
     applied[d] += contact[d];
     reaction[d] += springs[d];
   }
+  if (body->kinematics == ABUT_AXISYMMETRIC) reaction[0] = applied[0] = 0.; /* what points away from the axis has no resultant */
   PetscCall(VecDestroy(&r));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -293,7 +294,7 @@ static PetscErrorCode AbutBoundaryProjectTraction_Private(AbutBody body, AbutBou
   PetscReal m[ABUT_SIDE_NODES_MAX], inverse[ABUT_SIDE_NODES_MAX * ABUT_SIDE_NODES_MAX];
 
   PetscFunctionBegin;
-  PetscCall(AbutBodyEdgeMoments_Private(body, b->side[i], d, p, q, m));
+  PetscCall(AbutBodyEdgeMoments_Private(body, b->side[i], d, p, q, PETSC_FALSE, m));
   PetscCall(AbutGetLobattoMassInverse(b->order, inverse));
   for (PetscInt k = 0; k < n; ++k)
     for (PetscInt j = 0; j < n; ++j) b->traction[2 * (n * i + k) + d] += inverse[n * k + j] * m[j] / half;

@@ -8,7 +8,7 @@ static PetscErrorCode AbutBodyIntegrateForce_Private(AbutBody body, AbutHook h, 
 {
   const PetscReal *xi, *w;
   PetscInt         npoints;
-  PetscReal        N[ABUT_CELL_NODES_MAX], G[2 * ABUT_CELL_NODES_MAX], x[2], f[2], det;
+  PetscReal        N[ABUT_CELL_NODES_MAX], G[2 * ABUT_CELL_NODES_MAX], x[2], f[2], det, thickness;
 
   PetscFunctionBegin;
   PetscCall(PetscQuadratureGetData(rule, NULL, NULL, &npoints, &xi, &w));
@@ -18,7 +18,8 @@ static PetscErrorCode AbutBodyIntegrateForce_Private(AbutBody body, AbutHook h, 
     for (PetscInt q = 0; q < npoints; ++q) {
       PetscCall(AbutMeshMapCell(body->mesh, c, xi + 2 * q, x, N, G, &det));
       PetscCall((*h->call.force)(x, f, h->ctx));
-      for (PetscInt k = 0; k < 2 * t->nodes; ++k) moment[k] += w[q] * det * N[k / 2] * f[k % 2];
+      PetscCall(AbutBodyGetThickness(body, x, &thickness));
+      for (PetscInt k = 0; k < 2 * t->nodes; ++k) moment[k] += w[q] * det * thickness * N[k / 2] * f[k % 2];
     }
     for (PetscInt k = 0; k < 2 * t->nodes; ++k) {
       const PetscInt node = t->cellnode[t->nodes * c + k / 2];

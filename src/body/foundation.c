@@ -56,10 +56,13 @@ static PetscErrorCode AbutBodyElementSprings_Private(AbutBody body, const AbutMe
   PetscFunctionBegin;
   PetscCall(PetscDTGaussQuadrature(n, -1., 1., z, w));
   for (PetscInt q = 0; q < n; ++q) {
-    PetscReal N[ABUT_SIDE_NODES_MAX];
+    const PetscReal *p = b->x + 2 * AbutBoundaryNode(b, e, 0), *r = b->x + 2 * AbutBoundaryNode(b, e, b->order), s = 0.5 * (1. + z[q]);
+    const PetscReal  x[2] = {(1. - s) * p[0] + s * r[0], (1. - s) * p[1] + s * r[1]};
+    PetscReal        N[ABUT_SIDE_NODES_MAX], thickness;
 
     PetscCall(AbutEvaluateLobatto(b->order, z[q], N, NULL));
-    for (PetscInt i = 0; i < n * n; ++i) M[i] += 0.5 * length * w[q] * N[i / n] * N[i % n];
+    PetscCall(AbutBodyGetThickness(body, x, &thickness));
+    for (PetscInt i = 0; i < n * n; ++i) M[i] += 0.5 * length * w[q] * thickness * N[i / n] * N[i % n];
   }
   for (PetscInt k = 0; k < n; ++k) node[k] = body->boundaryglobal[AbutBoundaryNode(b, e, k)];
   for (PetscInt k = 0; k < n; ++k) {

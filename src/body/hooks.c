@@ -205,6 +205,43 @@ PetscErrorCode AbutBodyAddSideOffset(AbutBody body, const char name[], PetscLogE
 }
 
 /*@C
+   AbutBodyAddInitialStrain - Adds a strain that a body has without stress
+
+   Logically Collective
+
+   Input Parameters:
++  body     - the body
+.  name     - who brings it, for messages
+.  event    - logged while its nodal forces are made; 0 for that of the assembly
+.  linear   - whether it is linear in x and y all over the body, which more estimators can do
+.  function - e11, e22, e12 (half the change of the angle) and e33 at a point
+-  ctx      - handed to the function
+
+   Level: intermediate
+
+   Notes:
+   Stresses are those of the strain less this one. In plane strain e33 counts like the others, for the strain across the plane stays 0; in
+   plane stress it makes no stress. Several add up.
+
+   Limits: orders of convergence need a smooth function; at order p one that is not a polynomial of degree p - 1 leaves a stress of its own
+   in every cell, of the size of the discretisation error.
+
+.seealso: `AbutBodySetUp()`, `AbutBodyGetCellStresses()`, `AbutBodyGetEnergy()`
+@*/
+PetscErrorCode AbutBodyAddInitialStrain(AbutBody body, const char name[], PetscLogEvent event, PetscBool linear,
+                                        AbutStrainFunction function, void *ctx)
+{
+  AbutHook h;
+
+  PetscFunctionBegin;
+  PetscCall(AbutBodyAddHook_Private(body, ABUT_HOOK_STRAIN, name, event,
+                                    linear ? ABUT_FEATURE_INITIAL_STRAIN_LINEAR : ABUT_FEATURE_INITIAL_STRAIN, ctx, &h));
+  h->call.strain = function;
+  body->initial  = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
    AbutBodyAddFeature - Says that a body has something that an estimator must know of
 
    Logically Collective
@@ -270,9 +307,10 @@ PetscErrorCode AbutBodyGetFeatures(AbutBody body, PetscInt *features)
 @*/
 PetscErrorCode AbutBodyFindFeature(AbutBody body, PetscInt able, const char *what[], const char *name[])
 {
-  static const char *const words[] = {"a body force",      "a body force that varies", "springs",
-                                      "an initial strain", "axial symmetry",           "plane stress",
-                                      "nodal forces"};
+  static const char *const words[] = {"a body force",   "a body force that varies",
+                                      "springs",        "an initial strain that is not linear",
+                                      "axial symmetry", "plane stress",
+                                      "nodal forces",   "an initial strain"};
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, ABUTBODY_CLASSID, 1);

@@ -14,11 +14,12 @@ typedef struct {
 
 /* A translation is free if its component is prescribed nowhere. A turn about (x0, y0) leaves u1 in peace on the line y = y0 and u2 on
    x = x0, so it is free if all prescribed u1 lie on one line of constant y, and all prescribed u2 on one of constant x. The ends of the
-   straight sides stand for all their points. */
+   straight sides stand for all their points. With axial symmetry only moving along the axis leaves the circumferences as they are. */
 static PetscErrorCode AbutBodyFindFreeMotions_Private(AbutBody body, AbutFreeMotions *f)
 {
-  PetscReal lower[2], upper[2], least[2], most[2], size;
-  PetscInt  nsides, n[2] = {0, 0};
+  const PetscBool axial = (PetscBool)(body->kinematics == ABUT_AXISYMMETRIC);
+  PetscReal       lower[2], upper[2], least[2], most[2], size;
+  PetscInt        nsides, n[2] = {0, 0};
 
   PetscFunctionBegin;
   PetscCall(AbutMeshGetBox(body->mesh, lower, upper));
@@ -44,10 +45,10 @@ static PetscErrorCode AbutBodyFindFreeMotions_Private(AbutBody body, AbutFreeMot
     }
   f->n = 0;
   for (PetscInt d = 0; d < 2; ++d) {
-    if (!n[d]) f->kind[f->n++] = d ? ABUT_MOVE_Y : ABUT_MOVE_X;
+    if (!n[d] && (d || !axial)) f->kind[f->n++] = d ? ABUT_MOVE_Y : ABUT_MOVE_X;
     f->center[!d] = 0.5 * (n[d] ? least[!d] + most[!d] : lower[!d] + upper[!d]);
   }
-  if ((!n[0] || most[1] - least[1] <= 1e-10 * size) && (!n[1] || most[0] - least[0] <= 1e-10 * size)) f->kind[f->n++] = ABUT_TURN;
+  if (!axial && (!n[0] || most[1] - least[1] <= 1e-10 * size) && (!n[1] || most[0] - least[0] <= 1e-10 * size)) f->kind[f->n++] = ABUT_TURN;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -378,6 +379,10 @@ PetscErrorCode AbutBodyGetImbalance(AbutBody body, PetscBool contact, PetscReal 
   PetscCall(AbutBodyNeedSetUp_Private(body));
   if (!body->nmodes) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecMDot(body->load, body->nmodes, body->mode, of[0]));
+  if (body->initial) { /* they have none, but for round-off */
+    PetscCall(VecMDot(body->initialload, body->nmodes, body->mode, of[1]));
+    for (PetscInt k = 0; k < body->nmodes; ++k) of[0][k] -= of[1][k];
+  }
   PetscCall(VecNorm(body->load, NORM_2, &size[0]));
   for (PetscInt k = 0; k < body->nmodes; ++k) of[1][k] = 0.;
   if (contact) {

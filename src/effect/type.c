@@ -26,6 +26,9 @@ PetscErrorCode AbutEffectInitializePackage_Private(void)
   PetscCall(AbutEffectRegister(ABUTEFFECTPRESSURE, AbutEffectCreate_Pressure));
   PetscCall(AbutEffectRegister(ABUTEFFECTSPRING, AbutEffectCreate_Spring));
   PetscCall(AbutEffectRegister(ABUTEFFECTOVERLAP, AbutEffectCreate_Overlap));
+  PetscCall(AbutEffectRegister(ABUTEFFECTTHERMAL, AbutEffectCreate_Thermal));
+  PetscCall(AbutEffectRegister(ABUTEFFECTPLANESTRESS, AbutEffectCreate_PlaneStress));
+  PetscCall(AbutEffectRegister(ABUTEFFECTAXISYMMETRIC, AbutEffectCreate_Axisymmetric));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -415,7 +415,7 @@ PetscErrorCode AbutPairGetCompliance(AbutPair pair, PetscReal compliance[2])
     PetscCall(AbutBodyGetMesh(pair->body[s], &mesh));
     PetscCall(AbutMeshGetSideEnds(mesh, pair->side[s], ends, normal));
     PetscCall(AbutBodyGetHeight(pair->body[s], normal, &height));
-    PetscCall(AbutBodyGetMaterial(pair->body[s], &young, &poisson));
+    PetscCall(AbutBodyGetPlaneMaterial(pair->body[s], &young, &poisson));
     compliance[s] = height * (1. - poisson * poisson) / young;
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -18,6 +18,10 @@ PETSC_INTERN PetscErrorCode AbutEffectCreate_Force(AbutEffect);
 PETSC_INTERN PetscErrorCode AbutEffectCreate_Pressure(AbutEffect);
 PETSC_INTERN PetscErrorCode AbutEffectCreate_Spring(AbutEffect);
 PETSC_INTERN PetscErrorCode AbutEffectCreate_Overlap(AbutEffect);
+PETSC_INTERN PetscErrorCode AbutEffectCreate_Thermal(AbutEffect);
+PETSC_INTERN PetscErrorCode AbutEffectCreate_PlaneStress(AbutEffect);
+PETSC_INTERN PetscErrorCode AbutEffectCreate_Axisymmetric(AbutEffect);
+PETSC_INTERN PetscErrorCode AbutEffectSetKinematics_Private(AbutEffect, AbutBody, AbutKinematics, PetscInt);
 
 /* Data of the types that are one formula along one side, see side.c */
 typedef struct {
