@@ -199,7 +199,7 @@ PetscErrorCode AbutPairMortar_Private(AbutPair pair)
   pair->order[0] = own->order;
   pair->order[1] = other ? other->order : -1;
   PetscCall(AbutPairProject_Private(pair));
-  pair->components = pair->straight ? 1 : 2;
+  pair->components = pair->straight && !pair->friction ? 1 : 2;
   PetscCall(PetscCalloc3(own->n, &pair->D, own->n, &pair->F, own->n, &pair->work));
   pair->overlap[0] = other ? PetscMax(pair->place[1][other->n - 1], 0.) : 0.;
   pair->overlap[1] = other ? PetscMin(pair->place[1][0], pair->place[0][own->n - 1]) : pair->place[0][own->n - 1];
@@ -210,6 +210,7 @@ PetscErrorCode AbutPairMortar_Private(AbutPair pair)
 
     if (to - from >= 1e-9 * (*end - *s)) PetscCall(AbutPairElement_Private(pair, &k, e, from, to));
   }
+  if (pair->friction) PetscCall(AbutPairFrictionSetUp_Private(pair));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
