@@ -43,7 +43,7 @@ static PetscErrorCode AbutActiveDefect_Private(AbutActive *s)
   for (PetscInt i = 0; i < s->model->n; ++i) size = PetscMax(size, PetscAbsReal(s->model->open[i]));
   for (PetscInt i = 0; i < s->model->n; ++i) {
     s->r[i] -= s->model->soft[i] * s->F[i];
-    if (s->F[i] <= 0. && PetscAbsReal(s->r[i]) <= ABUT_TOUCH * size) s->r[i] = 0.;
+    if ((s->model->friction ? s->F[i] == 0. : s->F[i] <= 0.) && PetscAbsReal(s->r[i]) <= ABUT_TOUCH * size) s->r[i] = 0.;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -152,14 +152,19 @@ static PetscErrorCode AbutActiveStep_Private(AbutActive *s)
     if (s->d[i] < 0.) furthest = PetscMin(furthest, -s->F[i] / s->d[i]);
   }
   step = s->balanced && curvature > 0. ? PetscMin(PetscMax(0., slope / curvature), furthest) : 1.;
-  for (PetscInt i = 0; i < model->n; ++i) s->F[i] = PetscMax(0., s->F[i] + step * s->d[i]);
+  if (model->friction) {
+    step = s->balanced ? AbutContactModelFrictionStep_Private(model, s->F, s->r, s->d, s->q) : 1.;
+    AbutContactModelFrictionAdd_Private(model, step, s->d, s->F);
+  } else
+    for (PetscInt i = 0; i < model->n; ++i) s->F[i] = PetscMax(0., s->F[i] + step * s->d[i]);
   for (PetscInt b = 0; b < f->nbodies; ++b) {
     PetscCall(VecScale(model->force[b], step));
     PetscCall(VecScale(model->w[b], step));
     PetscCall(AbutBodyUpdate(f->body[b], model->force[b], model->w[b]));
   }
   PetscCall(AbutInterfaceTraces_Private(f, f->u, f->g));
-  PetscCall(AbutContactModelLearn_Private(model, s->d, s->q));
+  if (model->friction) PetscCall(AbutContactModelLearnFriction_Private(model, s->d, s->q));
+  else PetscCall(AbutContactModelLearn_Private(model, s->d, s->q));
   s->balanced = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

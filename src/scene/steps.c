@@ -78,6 +78,7 @@ PetscErrorCode AbutSceneEndStep_Private(AbutScene scene, AbutAdaptVerdict adapt,
   if (scene->status == 3 && scene->limit == ABUT_ADAPT_DONE) scene->limit = adapt;
   *next = (PetscBool)(scene->step + 1 < scene->nsteps);
   *ends = (PetscBool) !*next;
+  if (*next && scene->snes) PetscCall(AbutInterfaceKeepSlip(scene->iface));
   if (*next || scene->limit == ABUT_ADAPT_DONE) PetscFunctionReturn(PETSC_SUCCESS);
   scene->verdict = scene->limit == ABUT_ADAPT_LEVEL ? "limit_level" : "limit_unknowns";
   scene->status  = 3;

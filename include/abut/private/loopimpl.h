@@ -9,12 +9,24 @@ typedef struct {
   PetscReal *x, *value;
 } AbutOldTrace;
 
+/* Of contact models with friction: unknowns are then contact forces and tangential forces */
+typedef struct {
+  PetscInt   *normal, *tangent; /* [n] the contact force that bounds a tangential one, and back; -1 if it is none, or there is none */
+  PetscReal  *mu;               /* [n] of its pair */
+  PetscInt   *zone;             /* [n] work */
+  PetscInt    nlearned;
+  PetscReal **learned; /* [nlearned][2*n] forces and what they took, of all sweeps, conjugate */
+} *AbutModelFriction;
+
 /* What the loop knows of the bodies without solving them: nodal contact forces F -> penetrations of the contact nodes of all pairs.
    With F >= 0, S the compliance of all bodies, soft_i = theta/D_i and G the penetrations by free rigid motions:
-     F complementary to  b - (S + soft) F + G a,   G'F = e   */
+     F complementary to  b - (S + soft) F + G a,   G'F = e
+   With friction F and penetrations of a pair have behind them its tangential forces and slips. */
 typedef struct {
   PetscInt   n, m;         /* contact nodes; free motions of all bodies */
-  PetscInt  *first, *node; /* [npairs+1] first contact node of each pair; [n] number among the nodes of the pair's pressure side */
+  PetscInt  *first, *node; /* [npairs+1] first contact node of each pair; [n] number among the nodes of the pair's pressure side, of
+                              tangential forces beyond all of these */
+  PetscInt  *normals;      /* [npairs] contact nodes of each pair */
   PetscReal *D, *soft;     /* [n] nodal lengths; theta/D */
   PetscReal *open;         /* [n] penetrations of bodies that stand still: minus the gap */
   PetscReal *S;            /* [n*n] at first the layers' compliance, then corrected by every sweep */
@@ -25,6 +37,7 @@ typedef struct {
   Vec       *force, *w;    /* [nbodies] of its last call: nodal forces on the bodies, displacements they make */
   PetscReal *b;            /* [n] work */
   PetscInt  *active;       /* [n] work */
+  AbutModelFriction friction; /* NULL: no pair has any */
 } *AbutContactModel;
 
 struct _p_AbutInterface {
@@ -103,5 +116,15 @@ PETSC_EXTERN PetscErrorCode AbutContactModelSolve_Private(AbutContactModel, cons
 PETSC_INTERN void           AbutContactModelPressures_Private(const AbutContactModel, PetscInt, const PetscReal[], PetscReal *const[]);
 PETSC_INTERN void           AbutContactModelForces_Private(const AbutContactModel, PetscInt, PetscReal *const[], PetscReal[]);
 PETSC_INTERN PetscReal      AbutContactModelEnergy_Private(const AbutContactModel, const PetscReal[], const PetscReal[]);
+PETSC_INTERN PetscErrorCode AbutContactModelOpen_Private(AbutInterface, AbutContactModel);
+/* friction.c */
+PETSC_INTERN PetscErrorCode AbutContactModelFriction_Private(AbutInterface, AbutContactModel);
+PETSC_INTERN PetscErrorCode AbutModelFrictionDestroy_Private(AbutModelFriction *);
+PETSC_INTERN PetscErrorCode AbutContactModelSolveFriction_Private(AbutContactModel, const PetscReal[], const PetscReal[], PetscReal[],
+                                                                  PetscReal[], PetscInt *, PetscBool *);
+PETSC_INTERN PetscReal      AbutContactModelFrictionStep_Private(const AbutContactModel, const PetscReal[], const PetscReal[],
+                                                                 const PetscReal[], const PetscReal[]);
+PETSC_INTERN void           AbutContactModelFrictionAdd_Private(const AbutContactModel, PetscReal, const PetscReal[], PetscReal[]);
+PETSC_INTERN PetscErrorCode AbutContactModelLearnFriction_Private(AbutContactModel, const PetscReal[], const PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutContactModelDestroy_Private(AbutContactModel *);
 PETSC_EXTERN PetscLogEvent  ABUTINTERFACE_Sweep;

@@ -46,6 +46,7 @@ typedef enum {
   ABUT_CHECK_TENSION, /* contact that pulls */
   ABUT_CHECK_COMPLEMENTARITY,
   ABUT_CHECK_PENETRATION, /* beyond what the penalty lets in */
+  ABUT_CHECK_FRICTION,    /* the law of friction; only where a pair has it */
   ABUT_CHECKS
 } AbutCheck;
 
