@@ -182,7 +182,8 @@ static PetscErrorCode AbutSceneCheckCoarsen_Private(AbutScene scene)
     PetscCall(AbutMeshGetFile(mesh, &file));
     PetscCall(AbutMeshGetShape(mesh, &shape));
     AbutCheckInput(!file || !scene->estimates[b] || shape == ABUT_QUAD, PetscObjectComm((PetscObject)scene),
-                   "adaptor_coarsen: the triangles of %s are from a file and are not merged; leave it out, or give a file with quads", name);
+                   "adaptor_coarsen: the triangles of %s are from a file and are not merged; leave it out, or give a file with quads",
+                   name);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
