@@ -75,7 +75,8 @@ static void AbutBoundaryAppend_Private(const AbutElementSide *e, PetscInt k, Abu
   for (PetscInt d = 0; d < 2; ++d) b->x[2 * b->order * k + d] = e->x[d];
 }
 
-/* Each contour begins at the lowest, then leftmost, node at which one side ends and the next begins: the same for every distribution */
+/* Each contour begins at the lowest, then leftmost, node at which one side ends and the next begins, or, where it is one side all round, at
+   the lowest, then leftmost, of all: the same for every distribution */
 static PetscErrorCode AbutBoundaryChain_Private(PetscInt n, const AbutElementSide all[], AbutBoundary *b, PetscInt global[])
 {
   PetscInt  *next, *previous, first, k = 0;
@@ -92,11 +93,11 @@ static PetscErrorCode AbutBoundaryChain_Private(PetscInt n, const AbutElementSid
   b->ncontours = 0;
   while (k < n) {
     first = -1;
-    for (PetscInt i = 0; i < n; ++i) {
-      if (used[i] || all[previous[i]].side == all[i].side) continue;
-      if (first < 0 || all[i].x[1] < all[first].x[1] || (all[i].x[1] == all[first].x[1] && all[i].x[0] < all[first].x[0])) first = i;
-    }
-    PetscCheck(first >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "A contour has no node where one side ends and the next begins");
+    for (PetscInt any = 0; any < 2 && first < 0; ++any)
+      for (PetscInt i = 0; i < n; ++i) {
+        if (used[i] || (!any && all[previous[i]].side == all[i].side)) continue;
+        if (first < 0 || all[i].x[1] < all[first].x[1] || (all[i].x[1] == all[first].x[1] && all[i].x[0] < all[first].x[0])) first = i;
+      }
     b->contour[b->ncontours++] = k;
     for (PetscInt i = first; !used[i]; i = next[i]) {
       used[i] = PETSC_TRUE;

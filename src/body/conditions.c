@@ -305,13 +305,17 @@ PetscErrorCode AbutBodyCheck(AbutBody body)
   for (PetscInt s = 0; s < nsides; ++s)
     for (PetscInt d = 0; d < 2; ++d) {
       const AbutCondition *c = &body->condition[s][d];
-      PetscReal            ends[4], normal[2], value;
+      const PetscReal     *segment;
+      PetscInt             n, samples;
+      PetscReal            value;
 
       if (!c->value) continue;
-      PetscCall(AbutMeshGetSideEnds(body->mesh, s, ends, normal));
-      for (PetscInt i = 0; i < ABUT_SAMPLES; ++i) {
-        const PetscReal z    = c->type == ABUT_DISPLACEMENT ? i / (ABUT_SAMPLES - 1.) : (i + 0.5) / ABUT_SAMPLES;
-        const PetscReal x[2] = {(1. - z) * ends[0] + z * ends[2], (1. - z) * ends[1] + z * ends[3]};
+      PetscCall(AbutMeshGetSideSegments(body->mesh, s, &n, &segment));
+      samples = PetscMax(2, ABUT_SAMPLES / n);
+      for (PetscInt i = 0; i < n * samples; ++i) {
+        const PetscReal *ends = segment + 4 * (i / samples);
+        const PetscReal  z    = c->type == ABUT_DISPLACEMENT ? i % samples / (samples - 1.) : (i % samples + 0.5) / samples;
+        const PetscReal  x[2] = {(1. - z) * ends[0] + z * ends[2], (1. - z) * ends[1] + z * ends[3]};
 
         PetscCall(AbutExpressionEvaluate(c->value, x, &value));
       }
@@ -325,12 +329,12 @@ PetscErrorCode AbutBodyCheck(AbutBody body)
    Not Collective
 
    Input Parameters:
-+  body   - the body, a box
++  body   - the body
 -  normal - [2] outward unit normal
 
    Output Parameters:
-+  side - number of the opposite side
--  type - traction, displacement or contact
++  side - number of the opposite side; -1 for a body from a file
+-  type - traction, displacement or contact; of a body from a file displacement if it is prescribed on any side
 
    Level: developer
 
@@ -340,9 +344,16 @@ PetscErrorCode AbutBodyGetFarSide(AbutBody body, const PetscReal normal[2], Pets
 {
   const PetscInt d = PetscAbsReal(normal[0]) > PetscAbsReal(normal[1]) ? 0 : 1;
 
+  const char *file;
+  PetscInt    nsides;
+
   PetscFunctionBegin;
-  *side = 2 * d + (normal[d] > 0. ? 0 : 1);
-  *type = body->condition[*side][d].type;
+  PetscCall(AbutMeshGetFile(body->mesh, &file));
+  PetscCall(AbutMeshGetSideCount(body->mesh, &nsides));
+  *side = file ? -1 : 2 * d + (normal[d] > 0. ? 0 : 1);
+  *type = ABUT_TRACTION;
+  for (PetscInt s = 0; s < nsides; ++s)
+    if ((file || s == *side) && *type != ABUT_DISPLACEMENT) *type = body->condition[s][d].type;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -353,13 +364,13 @@ PetscErrorCode AbutBodyGetFarSide(AbutBody body, const PetscReal normal[2], Pets
    Not Collective
 
    Input Parameters:
-+  body   - the body, a box
++  body   - the body
 .  x      - [2] point on one of its sides
 -  normal - [2] outward unit normal there
 
    Output Parameters:
 +  value - displacement of the far side along normal, length
--  found - `PETSC_FALSE` where it is not prescribed
+-  found - `PETSC_FALSE` where it is not prescribed, and for a body from a file
 
    Level: developer
 
@@ -374,8 +385,8 @@ PetscErrorCode AbutBodyGetSupportDisplacement(AbutBody body, const PetscReal x[2
 
   PetscFunctionBegin;
   PetscCall(AbutBodyGetFarSide(body, normal, &far, &type));
-  d      = far / 2;
-  *found = (PetscBool)(type == ABUT_DISPLACEMENT);
+  d      = PetscMax(far, 0) / 2;
+  *found = (PetscBool)(far >= 0 && type == ABUT_DISPLACEMENT);
   *value = 0.;
   if (!*found) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(AbutMeshGetBox(body->mesh, lower, upper));

@@ -13,8 +13,8 @@ typedef struct {
 } AbutFreeMotions;
 
 /* A translation is free if its component is prescribed nowhere. A turn about (x0, y0) leaves u1 in peace on the line y = y0 and u2 on
-   x = x0, so it is free if all prescribed u1 lie on one line of constant y, and all prescribed u2 on one of constant x. The ends of the
-   straight sides stand for all their points. With axial symmetry only moving along the axis leaves the circumferences as they are. */
+   x = x0, so it is free if all prescribed u1 lie on one line of constant y, and all prescribed u2 on one of constant x. The ends of
+   straight segments stand for all their points. With axial symmetry only moving along the axis leaves the circumferences as they are. */
 static PetscErrorCode AbutBodyFindFreeMotions_Private(AbutBody body, AbutFreeMotions *f)
 {
   const PetscBool axial = (PetscBool)(body->kinematics == ABUT_AXISYMMETRIC);
@@ -31,13 +31,14 @@ static PetscErrorCode AbutBodyFindFreeMotions_Private(AbutBody body, AbutFreeMot
   }
   for (PetscInt s = 0; s < nsides; ++s)
     for (PetscInt d = 0; d < 2; ++d) {
-      PetscReal ends[4], normal[2];
-      PetscBool holds;
+      const PetscReal *ends;
+      PetscInt         segments;
+      PetscBool        holds;
 
       PetscCall(AbutBodyHoldsSide_Private(body, s, d, &holds));
       if (!holds) continue;
-      PetscCall(AbutMeshGetSideEnds(body->mesh, s, ends, normal));
-      for (PetscInt end = 0; end < 2; ++end) {
+      PetscCall(AbutMeshGetSideSegments(body->mesh, s, &segments, &ends));
+      for (PetscInt end = 0; end < 2 * segments; ++end) {
         least[!d] = PetscMin(least[!d], ends[2 * end + !d]);
         most[!d]  = PetscMax(most[!d], ends[2 * end + !d]);
       }

@@ -114,14 +114,16 @@ static PetscErrorCode AbutSceneJump_Private(AbutScene scene, AbutBody body, cons
 /* Is a vertex of this body to lie on each edge? */
 static PetscErrorCode AbutSceneBodyFollows_Private(AbutScene scene, AbutBody body, PetscBool *follows)
 {
-  AbutMesh mesh;
-  PetscInt order;
+  AbutMesh    mesh;
+  PetscInt    order;
+  const char *file;
 
   PetscFunctionBegin;
   PetscCall(AbutBodyGetMesh(body, &mesh));
   PetscCall(AbutMeshGetOrder(mesh, &order));
+  PetscCall(AbutMeshGetFile(mesh, &file));
   *follows = PETSC_FALSE;
-  if (scene->adaptor && scene->npairs) PetscCall(AbutAdaptorFollows(scene->adaptor, order, follows));
+  if (scene->adaptor && scene->npairs && !file) PetscCall(AbutAdaptorFollows(scene->adaptor, order, follows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
