@@ -55,7 +55,7 @@ static void SetContactTraction(const AbutBoundary *b, PetscInt e, PetscInt previ
   for (PetscInt k = 0; k <= b->order; ++k) {
     const PetscInt   other = k == 0 ? previous : k == b->order ? b->next[e] : e;
     const PetscReal *f     = b->contact + 2 * AbutBoundaryNode(b, e, k);
-    PetscReal        D     = 0.5 * w[k] * length, m[2], N[2] = {n[0] / length, n[1] / length}, size, shear;
+    PetscReal        D = 0.5 * w[k] * length, m[2], N[2] = {n[0] / length, n[1] / length}, size, shear;
     PetscBool        corner = PETSC_FALSE;
 
     if (other != e && IsContact(b, other)) {
