@@ -58,8 +58,11 @@ static PetscErrorCode AbutFrictionSolveActive_Private(AbutContactModel model, Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Free motions a that balance the loads; *loose is one that the active unknowns do not resist, -1 if there is none */
-static PetscErrorCode AbutFrictionBalance_Private(AbutContactModel model, PetscInt na, PetscReal a[], PetscInt *loose)
+#define ABUT_SPRING 1e-6 /* of what a free motion meets when all nodes hold: far softer than contact */
+
+/* Free motions a that balance the loads; *loose is one that the active unknowns do not resist, -1 if there is none. stiffness may be NULL. */
+static PetscErrorCode AbutFrictionBalance_Private(AbutContactModel model, PetscInt na, PetscReal a[], PetscInt *loose,
+                                                  PetscReal stiffness[])
 {
   const PetscInt m = model->m;
   PetscReal     *W, *scale;
@@ -79,6 +82,8 @@ static PetscErrorCode AbutFrictionBalance_Private(AbutContactModel model, PetscI
       a[k] -= g * model->X[m * na + i];
       for (PetscInt l = 0; l < m; ++l) W[l * m + k] += g * model->X[l * na + i];
     }
+    W[k * m + k] += model->friction->spring[k];
+    if (stiffness) stiffness[k] = PetscAbsReal(W[k * m + k]);
     scale[k] = PetscSqrtReal(PetscAbsReal(W[k * m + k]));
     if (scale[k] <= 0. && *loose < 0) *loose = k;
   }
@@ -101,13 +106,14 @@ static PetscErrorCode AbutFrictionBalance_Private(AbutContactModel model, PetscI
 }
 
 /* Forces x and motions a in the present zones, and g, what is left of penetrations and slips */
-static PetscErrorCode AbutFrictionZone_Private(AbutContactModel model, PetscReal x[], PetscReal g[], PetscReal a[], PetscInt *loose)
+static PetscErrorCode AbutFrictionZone_Private(AbutContactModel model, PetscReal x[], PetscReal g[], PetscReal a[], PetscInt *loose,
+                                               PetscReal stiffness[])
 {
   const PetscInt n = model->n, m = model->m, na = AbutFrictionActive_Private(model);
 
   PetscFunctionBegin;
   PetscCall(AbutFrictionSolveActive_Private(model, na));
-  PetscCall(AbutFrictionBalance_Private(model, na, a, loose));
+  PetscCall(AbutFrictionBalance_Private(model, na, a, loose, stiffness));
   if (*loose >= 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArrayzero(x, n));
   PetscCall(PetscArraycpy(g, model->b, n));
@@ -204,36 +210,56 @@ static void AbutFrictionBegin_Private(AbutContactModel model, const PetscReal r[
   }
 }
 
+/* The zones of the answer. Where too few nodes hold a body all are closed and let stick, once; from then on a weak spring holds it too: a body
+   that slips on all its sides moves until one of them drags it along. Returns whether they have settled. */
+static PetscErrorCode AbutFrictionSettle_Private(AbutContactModel model, PetscReal x[], PetscReal g[], PetscReal a[], PetscInt *loose,
+                                                 PetscBool *settled)
+{
+  const PetscInt n       = model->n;
+  PetscBool      rescued = PETSC_FALSE;
+  PetscInt       least = n + 1, patience = ABUT_PATIENCE, wrong = 1;
+
+  PetscFunctionBegin;
+  for (PetscInt it = 0; wrong && it < 100 + 10 * n; ++it) {
+    PetscCall(AbutFrictionZone_Private(model, x, g, a, loose, NULL));
+    if (*loose >= 0 && rescued) break;
+    if (*loose >= 0) {
+      for (PetscInt c = 0; c < n; ++c) model->friction->zone[c] = ABUT_HOLDS;
+      PetscCall(AbutFrictionZone_Private(model, x, g, a, loose, model->friction->spring));
+      if (*loose >= 0) break;
+      for (PetscInt k = 0; k < model->m; ++k) model->friction->spring[k] *= ABUT_SPRING;
+      rescued = PETSC_TRUE;
+      least   = n + 1;
+    }
+    wrong = AbutFrictionExchange_Private(model, x, g, &least, &patience);
+  }
+  PetscCall(PetscArrayzero(model->friction->spring, model->m));
+  if (!wrong && model->m) {
+    AbutFrictionTouching_Private(model, x);
+    PetscCall(AbutFrictionZone_Private(model, x, g, a, loose, NULL));
+  }
+  *settled = (PetscBool)!wrong;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* AbutContactModelSolve_Private() with friction: r has slips behind the penetrations, F tangential forces behind the forces */
 PetscErrorCode AbutContactModelSolveFriction_Private(AbutContactModel model, const PetscReal r[], const PetscReal F[], PetscReal d[],
                                                      PetscReal a[], PetscInt *loose, PetscBool *solved)
 {
-  const PetscInt n       = model->n;
-  PetscBool      rescued = PETSC_FALSE;
+  const PetscInt n = model->n;
   PetscReal     *g;
-  PetscInt       least = n + 1, patience = ABUT_PATIENCE, wrong = 1;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(n, &g));
+  if (!model->friction->spring) PetscCall(PetscCalloc1(model->m, &model->friction->spring));
   AbutFrictionBegin_Private(model, r, F);
   for (PetscInt i = 0; i < n; ++i) {
     model->b[i] = r[i] + model->soft[i] * F[i];
     for (PetscInt j = 0; j < n; ++j) model->b[i] += model->S[i * n + j] * F[j];
   }
   *loose = -1;
-  for (PetscInt it = 0; wrong && it < 100 + 10 * n; ++it) {
-    PetscCall(AbutFrictionZone_Private(model, d, g, a, loose));
-    if (*loose >= 0 && rescued) break;
-    if (*loose >= 0) { /* too few nodes hold a body: close all and let them stick, once */
-      for (PetscInt c = 0; c < n; ++c) model->friction->zone[c] = ABUT_HOLDS;
-      rescued = PETSC_TRUE;
-    } else wrong = AbutFrictionExchange_Private(model, d, g, &least, &patience);
-  }
-  if (!wrong && model->m) {
-    AbutFrictionTouching_Private(model, d);
-    PetscCall(AbutFrictionZone_Private(model, d, g, a, loose));
-  }
-  *solved = (PetscBool)(!wrong && *loose < 0);
+  PetscCall(AbutFrictionSettle_Private(model, d, g, a, loose, solved));
+  if (*loose >= 0) *solved = PETSC_FALSE;
   for (PetscInt c = 0; c < n; ++c) {
     const PetscInt normal = model->friction->normal[c];
 

@@ -42,6 +42,7 @@ PetscErrorCode AbutModelFrictionDestroy_Private(AbutModelFriction *friction)
   PetscCall(PetscFree4((*friction)->normal, (*friction)->tangent, (*friction)->mu, (*friction)->zone));
   for (PetscInt k = 0; k < (*friction)->nlearned; ++k) PetscCall(PetscFree((*friction)->learned[k]));
   PetscCall(PetscFree((*friction)->learned));
+  PetscCall(PetscFree((*friction)->spring));
   PetscCall(PetscFree(*friction));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -22,6 +22,7 @@ typedef struct {
   PetscInt   *normal, *tangent; /* [n] the contact force that bounds a tangential one, and back; -1 if it is none, or there is none */
   PetscReal  *mu;               /* [n] of its pair */
   PetscInt   *zone;             /* [n] work */
+  PetscReal  *spring;           /* [m] what resists free motions beside contact while zones are sought; force over motion */
   PetscInt    nlearned;
   PetscReal **learned; /* [nlearned][2*n] forces and what they took, of all sweeps, conjugate */
 } *AbutModelFriction;
