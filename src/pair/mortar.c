@@ -76,8 +76,8 @@ static PetscErrorCode AbutPairDual_Private(PetscInt order, AbutDual A)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The same for bodies of revolution, whose integrals weigh the circumference: psi_i = D_i (M^-1 phi)_i with the weighted mass matrix M and D_i
-   the integral of phi_i, which is positive but on the axis from order 2 on, where it is 0 */
+/* The same for bodies of revolution, whose integrals weigh the circumference: psi_i = D_i (M^-1 phi)_i with the weighted mass matrix M and
+   D_i the integral of phi_i, which is positive but on the axis from order 2 on, where it is 0 */
 static PetscErrorCode AbutPairDualAxial_Private(AbutPair pair, PetscInt e, AbutDual A)
 {
   const PetscInt   p = pair->order[0], n = p + 1;
