@@ -140,6 +140,26 @@ static PetscErrorCode AbutQuadPlaceSet_Private(DM dm, PetscInt c, const AbutQuad
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A vertex that hangs may belong to cells of other ranks only */
+static PetscErrorCode AbutTreesHang_Private(DM dm, PetscSection section, PetscScalar x[])
+{
+  PetscInt vStart, vEnd;
+
+  PetscFunctionBegin;
+  PetscCall(DMPlexGetDepthStratum(dm, 0, &vStart, &vEnd));
+  for (PetscInt v = vStart; v < vEnd; ++v) {
+    const PetscInt *end;
+    PetscInt        above, at[3];
+
+    PetscCall(DMPlexGetTreeParent(dm, v, &above, NULL));
+    if (above == v) continue;
+    PetscCall(DMPlexGetCone(dm, above, &end));
+    for (PetscInt i = 0; i < 3; ++i) PetscCall(PetscSectionGetOffset(section, i < 2 ? end[i] : v, &at[i]));
+    for (PetscInt d = 0; d < 2; ++d) x[at[2] + d] = 0.5 * (x[at[0] + d] + x[at[1] + d]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The vertices of a mesh with curved sides, which p4est knows as that of the file */
 PetscErrorCode AbutTreesMove_Private(AbutMesh mesh, p4est_t *p4est, DM dm)
 {
@@ -165,6 +185,7 @@ PetscErrorCode AbutTreesMove_Private(AbutMesh mesh, p4est_t *p4est, DM dm)
       PetscCall(AbutQuadPlaceSet_Private(dm, c, &q, &parent, child, section, x));
     }
   }
+  PetscCall(AbutTreesHang_Private(dm, section, x));
   PetscCall(VecRestoreArray(coordinates, &x));
   PetscCall(DMSetCoordinatesLocal(dm, coordinates));
   PetscCall(AbutFirstCheckMoved_Private(mesh, folded));

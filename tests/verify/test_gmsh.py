@@ -122,7 +122,8 @@ def test_a_box_is_a_box():
     scene = """-scene_bodies lower,upper -scene_pairs mid -mid_pair_bodies upper,lower -mid_pair_sides bottom,top -mid_pair_gap 1e-3*x^2
     -mid_pair_penalty 0.05 -snes_rtol 1e-11 -scene_loop_share 0 -lower_material_young 2.1e5 -lower_material_poisson 0.3 -lower_bc_left_u1 0 -lower_bc_bottom_u2 0
     -upper_material_young 2.1e5 -upper_material_poisson 0.3 -upper_bc_left_u1 0 -upper_bc_top_u2 -1.366e-3
-    -adaptor_type threshold -adaptor_threshold 0.2 -adaptor_bodies lower -estimator_type zz -adaptor_max_level 4""".split()
+    -adaptor_type threshold -adaptor_threshold 0.2 -adaptor_bodies lower -estimator_type zz -adaptor_max_level 4
+    -upper_mesh_size 0.05+0.3*abs(x-1)""".split()
     boxes = "-lower_mesh_box 0,0,4,1 -lower_mesh_cells 8,2 -upper_mesh_box 0,1,4,2 -upper_mesh_cells 16,4 -upper_mesh_shape triangle".split()
     meshes = [{**box((0, 0), (4, 1), 8, 2), "surface": "lower"}, {**box((0, 1), (4, 2), 16, 4, corners=3), "surface": "upper"}]
     meshes[1]["lines"] = {f"{name}2": lines for name, lines in meshes[1]["lines"].items()}
@@ -132,7 +133,7 @@ def test_a_box_is_a_box():
         for ranks in 1, 3:
             files = ["-lower_mesh_file", path, "-lower_mesh_region", "lower", "-upper_mesh_file", path, "-upper_mesh_region", "upper"]
             theirs = run(None, *renamed, *files, ranks=ranks)
-            keys = "energy.strain", "pair.mid.force", "pair.mid.pressure_max", "body.lower.cells", "eta.lower"
+            keys = "energy.strain", "pair.mid.force", "pair.mid.pressure_max", "body.lower.cells", "body.upper.cells", "body.upper.level_max", "eta.lower"
             worst = max([worst] + [abs(theirs[key] / ours[key] - 1) for key in keys])
     assert "body.lower.unknowns_uniform" not in theirs
     case("V13", "a contact between two boxes from one file against boxes by keys", worst, 1e-9)
