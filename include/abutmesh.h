@@ -9,8 +9,9 @@
    Level: intermediate
 
    Notes:
-   Quadrilaterals are held by a p4est quadtree forest (refinement, 2:1 balance across sides, partition) and converted to a `DMPLEX` with a
-   tree; triangles are a `DMPLEX` refined by `DMPLEXREFINESBR`. Every cell is on exactly one rank (no overlap); a rank may be without cells.
+   The first mesh is the grid of a box or comes from a gmsh file. Quadrilaterals are held by a p4est quadtree forest (refinement, 2:1
+   balance across sides, partition) and converted to a `DMPLEX` with a tree; triangles are a `DMPLEX` refined by `DMPLEXREFINESBR`. Every
+   cell is on exactly one rank (no overlap); a rank may be without cells.
 
 .seealso: `AbutMeshCreate()`, `AbutMeshAdapt()`, `AbutMeshGetTopology()`, `AbutBody`
 S*/
@@ -67,6 +68,9 @@ typedef struct {
 PETSC_EXTERN PetscClassId   ABUTMESH_CLASSID;
 PETSC_EXTERN PetscErrorCode AbutMeshCreate(MPI_Comm, AbutMesh *);
 PETSC_EXTERN PetscErrorCode AbutMeshSetBox(AbutMesh, const PetscReal[2], const PetscReal[2], const PetscInt[2], AbutShape);
+PETSC_EXTERN PetscErrorCode AbutMeshSetFile(AbutMesh, const char[], const char[]);
+PETSC_EXTERN PetscErrorCode AbutMeshGetFile(AbutMesh, const char *[]);
+PETSC_EXTERN PetscErrorCode AbutMeshSetCurve(AbutMesh, PetscInt, const char[], const char[]);
 PETSC_EXTERN PetscErrorCode AbutMeshSetFromOptions(AbutMesh);
 PETSC_EXTERN PetscErrorCode AbutMeshSetUp(AbutMesh);
 PETSC_EXTERN PetscErrorCode AbutMeshView(AbutMesh, PetscViewer);
@@ -80,7 +84,11 @@ PETSC_EXTERN PetscErrorCode AbutMeshGetSideCount(AbutMesh, PetscInt *);
 PETSC_EXTERN PetscErrorCode AbutMeshGetSideName(AbutMesh, PetscInt, const char *[]);
 PETSC_EXTERN PetscErrorCode AbutMeshFindSide(AbutMesh, const char[], const char[], PetscInt *);
 PETSC_EXTERN PetscErrorCode AbutMeshGetSideEnds(AbutMesh, PetscInt, PetscReal[4], PetscReal[2]);
-PETSC_EXTERN PetscErrorCode AbutMeshGetSidePolygon(AbutMesh, PetscInt, PetscInt *, const PetscReal *[]);
+PETSC_EXTERN PetscErrorCode AbutMeshGetSideSegments(AbutMesh, PetscInt, PetscInt *, const PetscReal *[]);
+PETSC_EXTERN PetscErrorCode AbutMeshGetSideDirection(AbutMesh, PetscInt, PetscReal[2]);
+PETSC_EXTERN PetscErrorCode AbutMeshGetCurvePoint(AbutMesh, PetscInt, const PetscReal[2], PetscReal[2]);
+PETSC_EXTERN PetscErrorCode AbutMeshIsSideStraight(AbutMesh, PetscInt, PetscBool *);
+PETSC_EXTERN PetscErrorCode AbutMeshCovers(AbutMesh, const PetscReal[2], PetscBool *);
 PETSC_EXTERN PetscErrorCode AbutMeshAdapt(AbutMesh, const PetscBool[]);
 PETSC_EXTERN PetscErrorCode AbutMeshSetCoarsening(AbutMesh, const PetscBool[]);
 PETSC_EXTERN PetscErrorCode AbutMeshKeepCell(AbutMesh, PetscInt);

@@ -75,7 +75,8 @@ static void AbutBoundaryAppend_Private(const AbutElementSide *e, PetscInt k, Abu
   for (PetscInt d = 0; d < 2; ++d) b->x[2 * b->order * k + d] = e->x[d];
 }
 
-/* Each contour begins at the lowest, then leftmost, node at which one side ends and the next begins: the same for every distribution */
+/* Each contour begins at the lowest, then leftmost, node at which one side ends and the next begins, or, where it is one side all round, at
+   the lowest, then leftmost, of all: the same for every distribution */
 static PetscErrorCode AbutBoundaryChain_Private(PetscInt n, const AbutElementSide all[], AbutBoundary *b, PetscInt global[])
 {
   PetscInt  *next, *previous, first, k = 0;
@@ -92,11 +93,11 @@ static PetscErrorCode AbutBoundaryChain_Private(PetscInt n, const AbutElementSid
   b->ncontours = 0;
   while (k < n) {
     first = -1;
-    for (PetscInt i = 0; i < n; ++i) {
-      if (used[i] || all[previous[i]].side == all[i].side) continue;
-      if (first < 0 || all[i].x[1] < all[first].x[1] || (all[i].x[1] == all[first].x[1] && all[i].x[0] < all[first].x[0])) first = i;
-    }
-    PetscCheck(first >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "A contour has no node where one side ends and the next begins");
+    for (PetscInt any = 0; any < 2 && first < 0; ++any)
+      for (PetscInt i = 0; i < n; ++i) {
+        if (used[i] || (!any && all[previous[i]].side == all[i].side)) continue;
+        if (first < 0 || all[i].x[1] < all[first].x[1] || (all[i].x[1] == all[first].x[1] && all[i].x[0] < all[first].x[0])) first = i;
+      }
     b->contour[b->ncontours++] = k;
     for (PetscInt i = first; !used[i]; i = next[i]) {
       used[i] = PETSC_TRUE;
@@ -258,8 +259,8 @@ PetscErrorCode AbutBodyCreateReaction_Private(AbutBody body, Vec *reaction)
 .  body - the body, solved
 
    Output Parameters:
-+  reaction - [2] sum of the reactions, stress times length
--  applied  - [2] sum of tractions and contact forces; in equilibrium the two cancel
++  reaction - [2] sum of the reactions, those of springs too, stress times length; with axial symmetry over the circumference, 0 along x
+-  applied  - [2] sum of loads and contact forces; in equilibrium the two cancel
 
    Level: intermediate
 
@@ -268,16 +269,19 @@ PetscErrorCode AbutBodyCreateReaction_Private(AbutBody body, Vec *reaction)
 PetscErrorCode AbutBodyGetReaction(AbutBody body, PetscReal reaction[2], PetscReal applied[2])
 {
   Vec       r;
-  PetscReal contact[2];
+  PetscReal contact[2], springs[2], work;
 
   PetscFunctionBegin;
   PetscCall(AbutBodyCreateReaction_Private(body, &r));
+  PetscCall(AbutBodyGetFoundationForce_Private(body, springs, &work));
   for (PetscInt d = 0; d < 2; ++d) {
     PetscCall(VecStrideSum(r, d, &reaction[d]));
     PetscCall(VecStrideSum(body->load, d, &applied[d]));
     PetscCall(VecStrideSum(body->contact, d, &contact[d]));
     applied[d] += contact[d];
+    reaction[d] += springs[d];
   }
+  if (body->kinematics == ABUT_AXISYMMETRIC) reaction[0] = applied[0] = 0.; /* what points away from the axis has no resultant */
   PetscCall(VecDestroy(&r));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -291,7 +295,7 @@ static PetscErrorCode AbutBoundaryProjectTraction_Private(AbutBody body, AbutBou
   PetscReal m[ABUT_SIDE_NODES_MAX], inverse[ABUT_SIDE_NODES_MAX * ABUT_SIDE_NODES_MAX];
 
   PetscFunctionBegin;
-  PetscCall(AbutBodyEdgeMoments_Private(body, b->side[i], d, p, q, m));
+  PetscCall(AbutBodyEdgeMoments_Private(body, b->side[i], d, p, q, PETSC_FALSE, m));
   PetscCall(AbutGetLobattoMassInverse(b->order, inverse));
   for (PetscInt k = 0; k < n; ++k)
     for (PetscInt j = 0; j < n; ++j) b->traction[2 * (n * i + k) + d] += inverse[n * k + j] * m[j] / half;
@@ -334,9 +338,11 @@ PetscErrorCode AbutBodyGetBoundary(AbutBody body, AbutBoundary **boundary)
       b->condition[2 * i + d] = body->condition[b->side[i]][d].type;
       PetscCall(AbutBoundaryProjectTraction_Private(body, b, i, d));
     }
+  for (PetscInt k = 0; k < 2 * (b->order + 1) * n; ++k) b->traction[k] *= body->factor;
   PetscCall(AbutBodyGatherBoundary_Private(body, body->u, &value));
   PetscCall(PetscArraycpy(b->u, value, 2 * nodes));
   PetscCall(AbutBodyUngatherBoundary_Private(body, &value));
+  PetscCall(AbutBodyAddFoundationTraction_Private(body, b));
   PetscCall(AbutBodyGatherBoundary_Private(body, body->contact, &value));
   PetscCall(PetscArraycpy(b->contact, value, 2 * nodes));
   PetscCall(AbutBodyUngatherBoundary_Private(body, &value));

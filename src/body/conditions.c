@@ -160,29 +160,34 @@ PetscErrorCode AbutBodyGetCondition(AbutBody body, PetscInt side, PetscInt compo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Moments m[order+1] of a prescribed traction against the functions of an element side. The substitution s = z^3(10-15z+6z^2) crowds the
+/* Moments m[order+1] of a prescribed traction against the functions of an element side, over a unit of thickness or (whole) over that of
+   the body. The substitution s = z^3(10-15z+6z^2) crowds the
    points at the ends, where a pressure may have a root or a kink; polynomials up to degree 4 and more are still integrated exactly. */
 PetscErrorCode AbutBodyEdgeMoments_Private(AbutBody body, PetscInt side, PetscInt component, const PetscReal a[2], const PetscReal b[2],
-                                           PetscReal m[])
+                                           PetscBool whole, PetscReal m[])
 {
   const AbutCondition *c      = &body->condition[side][component];
-  const PetscReal      length = PetscSqrtReal(PetscSqr(b[0] - a[0]) + PetscSqr(b[1] - a[1]));
-  PetscReal            z[12 + 4 * ABUT_ORDER_MAX], w[12 + 4 * ABUT_ORDER_MAX], N[ABUT_SIDE_NODES_MAX];
-  PetscInt             p;
+  const PetscReal      length = PetscSqrtReal(PetscSqr(b[0] - a[0]) + PetscSqr(b[1] - a[1])),
+                  normal[2]   = {(b[1] - a[1]) / length, (a[0] - b[0]) / length};
+  PetscReal z[12 + 4 * ABUT_ORDER_MAX], w[12 + 4 * ABUT_ORDER_MAX], N[ABUT_SIDE_NODES_MAX];
+  PetscInt  p;
 
   PetscFunctionBegin;
   PetscCall(AbutMeshGetOrder(body->mesh, &p));
   for (PetscInt i = 0; i <= p; ++i) m[i] = 0.;
-  if (c->type != ABUT_TRACTION || !c->value) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!AbutBodyHasTraction_Private(body, side, component)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscDTGaussQuadrature(12 + 4 * p, 0., 1., z, w));
   for (PetscInt q = 0; q < 12 + 4 * p; ++q) {
     const PetscReal s = z[q] * z[q] * z[q] * (10. - 15. * z[q] + 6. * z[q] * z[q]), ds = 30. * PetscSqr(z[q] * (1. - z[q]));
     const PetscReal x[2] = {a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1])};
-    PetscReal       t;
+    PetscReal       t = 0., more[2] = {0., 0.}, thickness = 1.;
 
-    PetscCall(AbutExpressionEvaluate(c->value, x, &t));
+    if (c->value) PetscCall(AbutExpressionEvaluate(c->value, x, &t));
+    PetscCall(AbutBodyHookTraction_Private(body, side, x, normal, more));
+    t += more[component];
     PetscCall(AbutEvaluateLobatto(p, 2. * s - 1., N, NULL));
-    for (PetscInt i = 0; i <= p; ++i) m[i] += w[q] * ds * length * t * N[i];
+    if (whole) PetscCall(AbutBodyGetThickness(body, x, &thickness));
+    for (PetscInt i = 0; i <= p; ++i) m[i] += w[q] * ds * length * t * N[i] * thickness;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -194,11 +199,12 @@ static PetscErrorCode AbutBodyLoad_Private(AbutBody body, const AbutMeshTopology
   PetscReal           m[ABUT_SIDE_NODES_MAX];
 
   PetscFunctionBegin;
+  PetscCall(VecZeroEntries(body->load));
   for (PetscInt i = 0; i < b->n; ++i)
     for (PetscInt d = 0; d < 2; ++d) {
-      if (body->condition[b->side[i]][d].type != ABUT_TRACTION || !body->condition[b->side[i]][d].value) continue;
+      if (!AbutBodyHasTraction_Private(body, b->side[i], d)) continue;
       PetscCall(AbutBodyEdgeMoments_Private(body, b->side[i], d, b->x + 2 * AbutBoundaryNode(b, i, 0),
-                                            b->x + 2 * AbutBoundaryNode(b, i, b->order), m));
+                                            b->x + 2 * AbutBoundaryNode(b, i, b->order), PETSC_TRUE, m));
       for (PetscInt k = 0; k <= b->order; ++k) {
         const PetscInt node = body->boundaryglobal[AbutBoundaryNode(b, i, k)];
 
@@ -210,7 +216,8 @@ static PetscErrorCode AbutBodyLoad_Private(AbutBody body, const AbutMeshTopology
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Which unknowns of the gathered boundary are prescribed, is[2*nnodes], and their values; the first side of a corner says it */
+/* Which unknowns of the gathered boundary are prescribed, is[2*nnodes], and their values; the first side of a corner says it. Points of an
+   axis of symmetry stay there. */
 static PetscErrorCode AbutBodyPrescribe_Private(AbutBody body, PetscBool is[], PetscReal value[])
 {
   const AbutBoundary *b = body->boundary;
@@ -228,6 +235,11 @@ static PetscErrorCode AbutBodyPrescribe_Private(AbutBody body, PetscBool is[], P
         PetscCall(AbutExpressionEvaluate(c->value, b->x + 2 * node, &value[2 * node + d]));
       }
     }
+  for (PetscInt i = 0; body->kinematics == ABUT_AXISYMMETRIC && i < b->nnodes; ++i) {
+    if (!AbutBodyOnAxis_Private(body, b->x + 2 * i)) continue;
+    is[2 * i]    = PETSC_TRUE;
+    value[2 * i] = 0.;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -257,7 +269,7 @@ PetscErrorCode AbutBodyConditionsSetUp_Private(AbutBody body)
   PetscCall(ISCreateGeneral(PetscObjectComm((PetscObject)body), n, row, PETSC_COPY_VALUES, &body->constrained));
   PetscCall(VecCreateMPI(PetscObjectComm((PetscObject)body), n, PETSC_DETERMINE, &body->prescribed));
   PetscCall(VecGetArrayWrite(body->prescribed, &p));
-  for (PetscInt i = 0; i < n; ++i) p[i] = value[i];
+  for (PetscInt i = 0; i < n; ++i) p[i] = body->factor * value[i];
   PetscCall(VecRestoreArrayWrite(body->prescribed, &p));
   PetscCall(PetscFree4(row, value, of, is));
   PetscCall(AbutBodyLoad_Private(body, t));
@@ -267,7 +279,8 @@ PetscErrorCode AbutBodyConditionsSetUp_Private(AbutBody body)
 #define ABUT_SAMPLES 32
 
 /*@
-   AbutBodyCheck - Ends the run if what is given on a side is not a finite number there; needs no mesh yet
+   AbutBodyCheck - Ends the run if what is given on a side is not a finite number there, or a body with axial symmetry reaches beyond its
+   axis; needs no mesh yet
 
    Collective
 
@@ -288,17 +301,22 @@ PetscErrorCode AbutBodyCheck(AbutBody body)
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, ABUTBODY_CLASSID, 1);
+  PetscCall(AbutBodyCheckKinematics_Private(body));
   PetscCall(AbutMeshGetSideCount(body->mesh, &nsides));
   for (PetscInt s = 0; s < nsides; ++s)
     for (PetscInt d = 0; d < 2; ++d) {
       const AbutCondition *c = &body->condition[s][d];
-      PetscReal            ends[4], normal[2], value;
+      const PetscReal     *segment;
+      PetscInt             n, samples;
+      PetscReal            value;
 
       if (!c->value) continue;
-      PetscCall(AbutMeshGetSideEnds(body->mesh, s, ends, normal));
-      for (PetscInt i = 0; i < ABUT_SAMPLES; ++i) {
-        const PetscReal z    = c->type == ABUT_DISPLACEMENT ? i / (ABUT_SAMPLES - 1.) : (i + 0.5) / ABUT_SAMPLES;
-        const PetscReal x[2] = {(1. - z) * ends[0] + z * ends[2], (1. - z) * ends[1] + z * ends[3]};
+      PetscCall(AbutMeshGetSideSegments(body->mesh, s, &n, &segment));
+      samples = PetscMax(2, ABUT_SAMPLES / n);
+      for (PetscInt i = 0; i < n * samples; ++i) {
+        const PetscReal *ends = segment + 4 * (i / samples);
+        const PetscReal  z    = c->type == ABUT_DISPLACEMENT ? i % samples / (samples - 1.) : (i % samples + 0.5) / samples;
+        const PetscReal  x[2] = {(1. - z) * ends[0] + z * ends[2], (1. - z) * ends[1] + z * ends[3]};
 
         PetscCall(AbutExpressionEvaluate(c->value, x, &value));
       }
@@ -312,12 +330,12 @@ PetscErrorCode AbutBodyCheck(AbutBody body)
    Not Collective
 
    Input Parameters:
-+  body   - the body, a box
++  body   - the body
 -  normal - [2] outward unit normal
 
    Output Parameters:
-+  side - number of the opposite side
--  type - traction, displacement or contact
++  side - number of the opposite side; -1 for a body from a file
+-  type - traction, displacement or contact; of a body from a file displacement if it is prescribed on any side
 
    Level: developer
 
@@ -327,9 +345,16 @@ PetscErrorCode AbutBodyGetFarSide(AbutBody body, const PetscReal normal[2], Pets
 {
   const PetscInt d = PetscAbsReal(normal[0]) > PetscAbsReal(normal[1]) ? 0 : 1;
 
+  const char *file;
+  PetscInt    nsides;
+
   PetscFunctionBegin;
-  *side = 2 * d + (normal[d] > 0. ? 0 : 1);
-  *type = body->condition[*side][d].type;
+  PetscCall(AbutMeshGetFile(body->mesh, &file));
+  PetscCall(AbutMeshGetSideCount(body->mesh, &nsides));
+  *side = file ? -1 : 2 * d + (normal[d] > 0. ? 0 : 1);
+  *type = ABUT_TRACTION;
+  for (PetscInt s = 0; s < nsides; ++s)
+    if ((file || s == *side) && *type != ABUT_DISPLACEMENT) *type = body->condition[s][d].type;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -340,13 +365,13 @@ PetscErrorCode AbutBodyGetFarSide(AbutBody body, const PetscReal normal[2], Pets
    Not Collective
 
    Input Parameters:
-+  body   - the body, a box
++  body   - the body
 .  x      - [2] point on one of its sides
 -  normal - [2] outward unit normal there
 
    Output Parameters:
 +  value - displacement of the far side along normal, length
--  found - `PETSC_FALSE` where it is not prescribed
+-  found - `PETSC_FALSE` where it is not prescribed, and for a body from a file
 
    Level: developer
 
@@ -361,13 +386,13 @@ PetscErrorCode AbutBodyGetSupportDisplacement(AbutBody body, const PetscReal x[2
 
   PetscFunctionBegin;
   PetscCall(AbutBodyGetFarSide(body, normal, &far, &type));
-  d      = far / 2;
-  *found = (PetscBool)(type == ABUT_DISPLACEMENT);
+  d      = PetscMax(far, 0) / 2;
+  *found = (PetscBool)(far >= 0 && type == ABUT_DISPLACEMENT);
   *value = 0.;
   if (!*found) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(AbutMeshGetBox(body->mesh, lower, upper));
   foot[d] = far % 2 ? upper[d] : lower[d];
   PetscCall(AbutExpressionEvaluate(body->condition[far][d].value, foot, value));
-  *value *= normal[d];
+  *value *= body->factor * normal[d];
   PetscFunctionReturn(PETSC_SUCCESS);
 }

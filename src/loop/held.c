@@ -155,20 +155,23 @@ static PetscErrorCode AbutJumpsFindFree_Private(AbutJumps *j, PetscInt *which, P
    across it first, against a turn those across y */
 static PetscErrorCode AbutBodyFindSupport_Private(AbutBody body, PetscBool turn, PetscInt d, const char *side[], PetscInt *component)
 {
-  AbutMesh mesh;
-  PetscInt found = -1;
+  AbutMesh    mesh;
+  PetscInt    found = -1, nsides;
+  const char *file;
 
   PetscFunctionBegin;
   PetscCall(AbutBodyGetMesh(body, &mesh));
-  for (PetscInt k = 0; k < 4 && found < 0; ++k) {
-    const PetscInt    s = 2 * (k < 2 ? d : !d) + k % 2;
+  PetscCall(AbutMeshGetFile(mesh, &file));
+  PetscCall(AbutMeshGetSideCount(mesh, &nsides));
+  for (PetscInt k = 0; k < nsides && found < 0; ++k) {
+    const PetscInt    s = file ? k : 2 * (k < 2 ? d : !d) + k % 2;
     AbutConditionType type;
 
-    PetscCall(AbutBodyGetCondition(body, s, turn ? s / 2 : d, &type));
+    PetscCall(AbutBodyGetCondition(body, s, turn && !file ? s / 2 : d, &type));
     if (type == ABUT_TRACTION) found = s;
   }
-  if (found < 0) found = 2 * d;
-  *component = turn ? found / 2 : d;
+  if (found < 0) found = file ? 0 : 2 * d;
+  *component = turn && !file ? found / 2 : d;
   PetscCall(AbutMeshGetSideName(mesh, found, side));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -178,17 +178,17 @@ static PetscErrorCode AbutLayerSides_Private(AbutInterface f, AbutContactModel m
   AbutBody          bodies[2], others[2];
   AbutMesh          mesh;
   PetscInt          sides[2], othersides[2], far;
-  PetscReal         ends[4], normal[2], young, poisson, height, *w;
+  PetscReal         normal[2], young, poisson, height, *w;
 
   PetscFunctionBegin;
   PetscCall(AbutPairGetBodies(f->pair[t / 2], bodies, sides));
   PetscCall(AbutPairGetBodies(f->pair[r / 2], others, othersides));
   PetscCall(AbutBodyGetMesh(bodies[t % 2], &mesh));
-  PetscCall(AbutMeshGetSideEnds(mesh, sides[t % 2], ends, normal));
+  PetscCall(AbutMeshGetSideDirection(mesh, sides[t % 2], normal));
   PetscCall(AbutBodyGetFarSide(bodies[t % 2], normal, &far, &condition));
   if (othersides[r % 2] != sides[t % 2] && othersides[r % 2] != far) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(AbutBodyGetHeight(bodies[t % 2], normal, &height));
-  PetscCall(AbutBodyGetMaterial(bodies[t % 2], &young, &poisson));
+  PetscCall(AbutBodyGetPlaneMaterial(bodies[t % 2], &young, &poisson));
   PetscCall(PetscMalloc1(m[t].n, &w));
   for (PetscInt k = 0; k < m[t].n; ++k) {
     const PetscReal compliance = 2. * (1. - poisson * poisson) / young, longest = 0.5 * PETSC_PI / m[t].length;

@@ -81,6 +81,26 @@ PetscErrorCode AbutInterfaceKeepTrace(AbutInterface iface, Vec x)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+   AbutInterfaceForgetTrace - The next loop begins without pressures that were kept
+
+   Logically Collective
+
+   Input Parameter:
+.  iface - the map
+
+   Level: developer
+
+.seealso: `AbutInterfaceKeepTrace()`
+@*/
+PetscErrorCode AbutInterfaceForgetTrace(AbutInterface iface)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(iface, ABUTINTERFACE_CLASSID, 1);
+  iface->warm = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Both node lists run along the same side in the same direction: one walk serves all nodes */
 static void AbutOldTraceValue_Private(const AbutOldTrace *old, const PetscReal x[2], PetscInt *element, PetscReal value[])
 {

@@ -1,3 +1,4 @@
+#include "first.h"
 #include "quadrants.h" /*I "abutmesh.h" I*/
 #include <p4est_bits.h>
 #include <p4est_extended.h>
@@ -199,6 +200,19 @@ static PetscErrorCode AbutForestToPlex_Private(AbutMesh mesh, p4est_t *p4est, DM
   PetscCall(DMSetCoordinateDim(*dm, 2));
   PetscCall(AbutForestFillPlex_Private(*dm, &data));
   for (int i = 0; i < 10; ++i) sc_array_destroy(*array[i]);
+  if (mesh->first && mesh->first->curved) PetscCall(AbutTreesMove_Private(mesh, p4est, *dm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutForestGrid_Private(AbutMesh mesh, p4est_connectivity_t **connectivity)
+{
+  PetscFunctionBegin;
+  *connectivity = p4est_connectivity_new_brick(mesh->cells[0], mesh->cells[1], 0, 0);
+  for (int i = 0; i < (*connectivity)->num_vertices; ++i)
+    for (int d = 0; d < 2; ++d) {
+      double *v = &(*connectivity)->vertices[3 * i + d];
+      *v        = AbutMeshGridLine_Private(mesh, d, (PetscInt)*v);
+    }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -207,12 +221,8 @@ static PetscErrorCode AbutMeshCreate_Forest_DM(AbutMesh mesh, DM *dm)
   AbutMesh_Forest *forest = (AbutMesh_Forest *)mesh->data;
 
   PetscFunctionBegin;
-  forest->connectivity = p4est_connectivity_new_brick(mesh->cells[0], mesh->cells[1], 0, 0);
-  for (int i = 0; i < forest->connectivity->num_vertices; ++i)
-    for (int d = 0; d < 2; ++d) {
-      double *v = &forest->connectivity->vertices[3 * i + d];
-      *v        = AbutMeshGridLine_Private(mesh, d, (PetscInt)*v);
-    }
+  if (mesh->first) PetscCall(AbutTreesCreate_Private(mesh, &forest->connectivity));
+  else PetscCall(AbutForestGrid_Private(mesh, &forest->connectivity));
   forest->p4est = p4est_new(PetscObjectComm((PetscObject)mesh), forest->connectivity, sizeof(AbutQuad), AbutForestBegin_Private, NULL);
   PetscCall(AbutForestToPlex_Private(mesh, forest->p4est, dm));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -230,6 +240,13 @@ static PetscErrorCode AbutMeshGetLevels_Forest(AbutMesh mesh, PetscInt level[])
 
     for (size_t q = 0; q < tree->quadrants.elem_count; ++q) level[c++] = p4est_quadrant_array_index(&tree->quadrants, q)->level;
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutMeshGetSides_Forest(AbutMesh mesh, PetscInt side[])
+{
+  PetscFunctionBegin;
+  PetscCall(AbutTreesGetSides_Private(mesh, ((AbutMesh_Forest *)mesh->data)->p4est, side));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -309,71 +326,7 @@ PetscErrorCode AbutMeshCreate_Forest(AbutMesh mesh)
   mesh->ops->keepfirst = AbutMeshKeepFirst_Forest;
   mesh->ops->refine    = AbutMeshRefine_Forest;
   mesh->ops->getlevels = AbutMeshGetLevels_Forest;
+  mesh->ops->getsides  = AbutMeshGetSides_Forest;
   mesh->ops->destroy   = AbutMeshDestroy_Forest;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-   AbutMeshSetBalance - Whether quads with a common side differ by at most one level
-
-   Logically Collective
-
-   Input Parameters:
-+  mesh    - the mesh, its box and order set
--  balance - `PETSC_TRUE` (default), or `PETSC_FALSE` for a mesh without the paper's extra rule
-
-   Level: advanced
-
-   Notes:
-   Without balance only the marked cells are split. The sides of fine cells on one of a coarse cell are joined to it by a mortar condition
-   with multipliers on the fine sides. The trace of the coarse cell is one of those of the fine ones, so the condition makes them equal: all
-   nodes on the coarse side take the values of its function there.
-
-   For the study of what the rule is good for: one rank, quads, order 1. Criterion (27) may split cells without end then; the residual
-   estimator, and meshes that follow the edges of contacts, want balance.
-
-   Source: the paper, Figs. 5 and 6.
-
-.seealso: `AbutMeshAdapt()`, `AbutMeshGetBalance()`
-@*/
-PetscErrorCode AbutMeshSetBalance(AbutMesh mesh, PetscBool balance)
-{
-  const MPI_Comm comm   = PetscObjectComm((PetscObject)mesh);
-  const char    *prefix = ((PetscObject)mesh)->prefix ? ((PetscObject)mesh)->prefix : "";
-  PetscMPIInt    size;
-
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(mesh, ABUTMESH_CLASSID, 1);
-  PetscCheck(!mesh->setupcalled, comm, PETSC_ERR_ORDER, "Call AbutMeshSetBalance() before AbutMeshSetUp()");
-  PetscCallMPI(MPI_Comm_size(comm, &size));
-  AbutCheckInput(balance || mesh->shape == ABUT_QUAD, comm,
-                 "%smesh_balance: triangles are always refined such that they fit; leave it out, or give %smesh_shape: quad", prefix,
-                 prefix);
-  AbutCheckInput(balance || mesh->order == 1, comm, "%smesh_balance: no is for order 1 only; leave it out, or give %smesh_order: 1", prefix,
-                 prefix);
-  AbutCheckInput(balance || size == 1, comm, "%smesh_balance: no is for one rank only; leave it out, or run on one", prefix);
-  mesh->balance = balance;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-   AbutMeshGetBalance - Whether quads with a common side differ by at most one level
-
-   Not Collective
-
-   Input Parameter:
-.  mesh - the mesh
-
-   Output Parameter:
-.  balance - `PETSC_TRUE` if they do
-
-   Level: advanced
-
-.seealso: `AbutMeshSetBalance()`
-@*/
-PetscErrorCode AbutMeshGetBalance(AbutMesh mesh, PetscBool *balance)
-{
-  PetscFunctionBegin;
-  *balance = mesh->balance;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,4 +1,4 @@
-#include <abut/private/meshimpl.h> /*I "abutmesh.h" I*/
+#include "first.h" /*I "abutmesh.h" I*/
 
 /* How a mesh became what it is: every set of ties, every split and every merge since the first mesh, by which a restarted run makes the
    same mesh again, on any number of ranks. Marked cells are known by their centres. */
@@ -173,8 +173,8 @@ static PetscBool AbutJournalHasTie_Private(AbutMesh mesh, const PetscReal value[
 {
   const PetscInt d = !(value[0] >= 2.);
 
-  return (PetscBool)(value[0] >= 0. && value[0] < ABUT_BOX_SIDES && value[1] > mesh->lower[d] && value[1] < mesh->upper[d] &&
-                     value[2] > mesh->lower[d] && value[2] < mesh->upper[d]);
+  return (PetscBool)(!mesh->first && value[0] >= 0. && value[0] < ABUT_BOX_SIDES && value[1] > mesh->lower[d] &&
+                     value[1] < mesh->upper[d] && value[2] > mesh->lower[d] && value[2] < mesh->upper[d]);
 }
 
 /* Does again what the journal says */
@@ -229,14 +229,16 @@ PetscErrorCode AbutMeshArchive(AbutMesh mesh, AbutArchive ar)
   MPI_Comm  comm  = PetscObjectComm((PetscObject)mesh);
   PetscInt  steps = mesh->nsteps, cells;
   PetscBool reads, same = PETSC_TRUE;
-  char      text[256];
+  char      text[512];
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(mesh, ABUTMESH_CLASSID, 1);
   PetscCall(AbutArchiveReads(ar, &reads));
-  PetscCall(PetscSNPrintf(text, sizeof(text), "%ss of order %d, %d by %d from %.17g,%.17g to %.17g,%.17g%s", AbutShapes[mesh->shape],
-                          (int)mesh->order, (int)mesh->cells[0], (int)mesh->cells[1], (double)mesh->lower[0], (double)mesh->lower[1],
-                          (double)mesh->upper[0], (double)mesh->upper[1], mesh->balance ? "" : ", without balance"));
+  if (mesh->first) PetscCall(AbutFirstDescribe_Private(mesh, text, sizeof(text)));
+  else
+    PetscCall(PetscSNPrintf(text, sizeof(text), "%ss of order %d, %d by %d from %.17g,%.17g to %.17g,%.17g%s", AbutShapes[mesh->shape],
+                            (int)mesh->order, (int)mesh->cells[0], (int)mesh->cells[1], (double)mesh->lower[0], (double)mesh->lower[1],
+                            (double)mesh->upper[0], (double)mesh->upper[1], mesh->balance ? "" : ", without balance"));
   PetscCall(AbutArchiveFit(ar, "its mesh", text));
   PetscCall(AbutArchiveCount(ar, "splits", &steps));
   for (PetscInt i = 0; i < steps && same; ++i) {

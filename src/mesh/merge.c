@@ -134,7 +134,7 @@ static PetscErrorCode AbutVerticesBisect_Private(AbutMesh mesh, PetscInt n, cons
   PetscCall(PetscFree(vertex));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, any, 1, MPIU_BOOL, MPI_LOR, PetscObjectComm((PetscObject)mesh)));
   if (*any) {
-    PetscCall(AbutTrianglesSplit_Private(*dm, active, &finer));
+    PetscCall(AbutTrianglesSplit_Private(mesh, *dm, active, &finer));
     PetscCall(DMDestroy(dm));
     *dm = finer;
   }

@@ -1,10 +1,9 @@
-#include <abut/private/meshimpl.h> /*I "abutmesh.h" I*/
+#include "first.h" /*I "abutmesh.h" I*/
 
 PetscClassId      ABUTMESH_CLASSID;
 PetscLogEvent     ABUTMESH_Adapt;
-const char *const AbutShapes[] = {"quad", "triangle", "AbutShape", "ABUT_", NULL};
-
-static const char *const AbutShapeNames[] = {"quad", "triangle", NULL};
+const char *const AbutShapes[]     = {"quad", "triangle", "AbutShape", "ABUT_", NULL};
+const char *const AbutShapeNames[] = {"quad", "triangle", NULL};
 
 static PetscErrorCode AbutMeshInitializePackage_Private(void)
 {
@@ -27,7 +26,10 @@ static PetscErrorCode AbutMeshInitializePackage_Private(void)
 .  mesh - the mesh
 
    Options Database Keys:
-+  -mesh_box <x0,y0,x1,y1>     - lower left and upper right corner, in the length unit of the scene
++  -mesh_file <part.msh>       - a gmsh file, instead of a box; shape of the cells and names of the sides are the file's
+.  -mesh_region <name>         - physical surface of the file whose cells are the body; all cells if it is not given
+.  -mesh_curve_SIDE <curve>    - `circle xc,yc,r`, or an expression that is 0 on the side, see `AbutMeshSetCurve()`
+.  -mesh_box <x0,y0,x1,y1>     - lower left and upper right corner, in the length unit of the scene
 .  -mesh_cells <nx,ny>         - cells of the first mesh along each direction (triangles: twice as many)
 .  -mesh_size <expression>     - largest side a cell may have, an expression in x and y: cells of the first mesh are split until they obey
 .  -mesh_shape <quad|triangle> - shape of the cells
@@ -37,9 +39,9 @@ static PetscErrorCode AbutMeshInitializePackage_Private(void)
    Level: intermediate
 
    Note:
-   Limits: plane boxes with sides left, right, bottom, top.
+   The sides of a box are left, right, bottom and top. Limits: plane bodies; those of a file are listed under `AbutMeshSetFile()`.
 
-.seealso: `AbutMeshSetFromOptions()`, `AbutMeshSetBox()`, `AbutMeshAdapt()`, `AbutMeshDestroy()`
+.seealso: `AbutMeshSetFromOptions()`, `AbutMeshSetBox()`, `AbutMeshSetFile()`, `AbutMeshAdapt()`, `AbutMeshDestroy()`
 @*/
 PetscErrorCode AbutMeshCreate(MPI_Comm comm, AbutMesh *mesh)
 {
@@ -87,8 +89,9 @@ PetscErrorCode AbutMeshSetBox(AbutMesh mesh, const PetscReal lower[2], const Pet
     mesh->upper[d] = upper[d];
     mesh->cells[d] = cells[d];
   }
-  mesh->shape  = shape;
-  mesh->boxset = PETSC_TRUE;
+  PetscCall(AbutFirstDestroy_Private(&mesh->first));
+  mesh->shape    = shape;
+  mesh->shapeset = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -142,48 +145,6 @@ PetscErrorCode AbutMeshGetOrder(AbutMesh mesh, PetscInt *order)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-   AbutMeshSetFromOptions - Reads the keys of a mesh
-
-   Collective
-
-   Input Parameter:
-.  mesh - the mesh; its keys are listed under `AbutMeshCreate()`
-
-   Level: intermediate
-
-.seealso: `AbutMeshCreate()`, `AbutMeshSetUp()`
-@*/
-PetscErrorCode AbutMeshSetFromOptions(AbutMesh mesh)
-{
-  const char *prefix   = ((PetscObject)mesh)->prefix ? ((PetscObject)mesh)->prefix : "";
-  PetscReal   box[4]   = {mesh->lower[0], mesh->lower[1], mesh->upper[0], mesh->upper[1]};
-  PetscInt    cells[2] = {mesh->cells[0], mesh->cells[1]}, shape = mesh->shape, order = mesh->order;
-  PetscBool   hasbox, hascells, hasshape, hasorder, hassize, hasbalance, balance = mesh->balance;
-  char        size[PETSC_MAX_PATH_LEN] = "", key[256];
-
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(mesh, ABUTMESH_CLASSID, 1);
-  PetscObjectOptionsBegin((PetscObject)mesh);
-  PetscCall(AbutOptionsReals(PetscOptionsObject, "-mesh_box", "x0,y0,x1,y1", 4, box, &hasbox));
-  PetscCall(AbutOptionsInts(PetscOptionsObject, "-mesh_cells", "nx,ny", 2, cells, &hascells));
-  PetscCall(AbutOptionsEnum(PetscOptionsObject, "-mesh_shape", "Shape of the cells", AbutShapeNames, &shape, &hasshape));
-  PetscCall(AbutOptionsInt(PetscOptionsObject, "-mesh_order", "Order of the displacement", &order, &hasorder));
-  PetscCall(AbutOptionsBool(PetscOptionsObject, "-mesh_balance", "At most one level between neighbours", &balance, &hasbalance));
-  PetscCall(AbutOptionsString(PetscOptionsObject, "-mesh_size", "Largest side of the cells", size, sizeof(size), &hassize));
-  PetscOptionsEnd();
-  PetscCall(PetscSNPrintf(key, sizeof(key), "%smesh_size", prefix));
-  PetscCall(AbutExpressionDestroy(&mesh->size));
-  if (hassize) PetscCall(AbutExpressionCreate(PetscObjectComm((PetscObject)mesh), key, size, &mesh->size));
-  AbutCheckInput(mesh->boxset || (hasbox && hascells), PetscObjectComm((PetscObject)mesh), "%smesh_%s: missing; give %s", prefix,
-                 hasbox ? "cells" : "box",
-                 hasbox ? "the cells along each direction, for example 8,2" : "the corners x0,y0,x1,y1 of the box, for example 0,0,4,1");
-  if (hasbox || hascells || hasshape) PetscCall(AbutMeshSetBox(mesh, box, box + 2, cells, (AbutShape)shape));
-  if (hasorder || hasshape) PetscCall(AbutMeshSetOrder(mesh, order));
-  if (hasbalance) PetscCall(AbutMeshSetBalance(mesh, balance));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Takes over a new DM, and makes what is derived from it */
 static PetscErrorCode AbutMeshSetDM_Private(AbutMesh mesh, DM dm)
 {
@@ -215,8 +176,8 @@ PetscErrorCode AbutMeshSetUp(AbutMesh mesh)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(mesh, ABUTMESH_CLASSID, 1);
   if (mesh->setupcalled) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(mesh->boxset, PetscObjectComm((PetscObject)mesh), PETSC_ERR_ARG_WRONGSTATE,
-             "Call AbutMeshSetBox() or AbutMeshSetFromOptions() first");
+  PetscCheck(mesh->shapeset, PetscObjectComm((PetscObject)mesh), PETSC_ERR_ARG_WRONGSTATE,
+             "Call AbutMeshSetBox(), AbutMeshSetFile() or AbutMeshSetFromOptions() first");
   PetscCall(AbutMeshSetOrder(mesh, mesh->order)); /* the shape may have come later */
   PetscCall(AbutMeshSetBalance(mesh, mesh->balance));
   mesh->setupcalled = PETSC_TRUE;
@@ -339,7 +300,7 @@ PetscErrorCode AbutMeshGetShape(AbutMesh mesh, AbutShape *shape)
 }
 
 /*@
-   AbutMeshGetBox - The corners of the box
+   AbutMeshGetBox - The corners of the box, for a mesh from a file those of the smallest box around its first vertices
 
    Not Collective
 
@@ -442,6 +403,7 @@ PetscErrorCode AbutMeshDestroy(AbutMesh *mesh)
   PetscCall(AbutJournalDestroy_Private(*mesh));
   PetscTryTypeMethod(*mesh, destroy);
   PetscCall(AbutExpressionDestroy(&(*mesh)->size));
+  PetscCall(AbutFirstDestroy_Private(&(*mesh)->first));
   PetscCall(PetscHeaderDestroy(mesh));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -9,3 +9,6 @@ typedef struct {
 } AbutPlexData;
 
 PETSC_INTERN PetscErrorCode AbutForestGetPlexData_Private(AbutMesh, p4est_t *, AbutPlexData *);
+PETSC_INTERN PetscErrorCode AbutTreesCreate_Private(AbutMesh, p4est_connectivity_t **);
+PETSC_INTERN PetscErrorCode AbutTreesGetSides_Private(AbutMesh, p4est_t *, PetscInt[]);
+PETSC_INTERN PetscErrorCode AbutTreesMove_Private(AbutMesh, p4est_t *, DM);

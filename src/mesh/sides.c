@@ -1,6 +1,7 @@
-#include <abut/private/meshimpl.h> /*I "abutmesh.h" I*/
+#include "first.h" /*I "abutmesh.h" I*/
 
-/* A cell's corner pair with both ends on one line of the box is an element side on the boundary: no interior side lies there */
+/* The named sides. Of a box, a cell's corner pair with both ends on one line of it is an element side on the boundary: no interior side
+   lies there. In a mesh from a file the sides of cells know on which side of the body they lie. */
 
 static const char *const AbutSideNames[ABUT_BOX_SIDES] = {"left", "right", "bottom", "top"};
 
@@ -18,15 +19,19 @@ static PetscInt AbutSideOf_Private(AbutMesh mesh, const PetscReal a[2], const Pe
 PetscErrorCode AbutMeshSidesBuild_Private(AbutMesh mesh)
 {
   AbutMeshTopology *t    = &mesh->topology;
-  PetscInt          room = 0, *edge, *node, *cell;
+  PetscInt          room = 0, *edge, *node, *cell, *known = NULL;
 
   PetscFunctionBegin;
+  if (mesh->first) {
+    PetscCall(PetscMalloc1(t->corners * t->ncells, &known));
+    PetscUseTypeMethod(mesh, getsides, known);
+  }
   for (PetscInt pass = 0; pass < 2; ++pass) {
     if (pass) PetscCall(PetscMalloc3(3 * room, &edge, (t->order + 1) * room, &node, room, &cell));
     for (PetscInt c = 0; c < t->ncells; ++c)
       for (PetscInt k = 0; k < t->corners; ++k) {
         const PetscInt a = t->cell[t->corners * c + k], b = t->cell[t->corners * c + (k + 1) % t->corners],
-                       side = AbutSideOf_Private(mesh, t->x + 2 * a, t->x + 2 * b);
+                       side = mesh->first ? known[t->corners * c + k] : AbutSideOf_Private(mesh, t->x + 2 * a, t->x + 2 * b);
 
         if (side < 0) continue;
         if (!pass) {
@@ -40,6 +45,7 @@ PetscErrorCode AbutMeshSidesBuild_Private(AbutMesh mesh)
         cell[t->nsideedges++] = c;
       }
   }
+  PetscCall(PetscFree(known));
   t->sideedge = edge;
   t->sidenode = node;
   t->sidecell = cell;
@@ -65,7 +71,7 @@ PetscErrorCode AbutMeshGetSideCount(AbutMesh mesh, PetscInt *n)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(mesh, ABUTMESH_CLASSID, 1);
-  *n = ABUT_BOX_SIDES;
+  *n = mesh->first ? mesh->first->nsides : ABUT_BOX_SIDES;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -79,7 +85,7 @@ PetscErrorCode AbutMeshGetSideCount(AbutMesh mesh, PetscInt *n)
 -  side - its number
 
    Output Parameter:
-.  name - left, right, bottom or top for a box
+.  name - left, right, bottom or top for a box; for a file that of the physical curve
 
    Level: intermediate
 
@@ -89,7 +95,7 @@ PetscErrorCode AbutMeshGetSideName(AbutMesh mesh, PetscInt side, const char *nam
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(mesh, ABUTMESH_CLASSID, 1);
-  *name = AbutSideNames[side];
+  *name = mesh->first ? mesh->first->name[side] : AbutSideNames[side];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -112,16 +118,46 @@ PetscErrorCode AbutMeshGetSideName(AbutMesh mesh, PetscInt side, const char *nam
 @*/
 PetscErrorCode AbutMeshFindSide(AbutMesh mesh, const char key[], const char name[], PetscInt *side)
 {
-  PetscBool match;
+  const char *have;
+  char        all[512] = "";
+  PetscInt    n;
+  PetscBool   match;
 
   PetscFunctionBegin;
-  for (PetscInt s = 0; s < ABUT_BOX_SIDES; ++s) {
-    PetscCall(PetscStrcasecmp(name, AbutSideNames[s], &match));
+  PetscCall(AbutMeshGetSideCount(mesh, &n));
+  for (PetscInt s = 0; s < n; ++s) {
+    PetscCall(AbutMeshGetSideName(mesh, s, &have));
+    PetscCall(PetscStrcasecmp(name, have, &match));
     *side = s;
     if (match) PetscFunctionReturn(PETSC_SUCCESS);
+    PetscCall(PetscStrlcat(all, s ? ", " : "", sizeof(all)));
+    PetscCall(PetscStrlcat(all, have, sizeof(all)));
   }
-  SETERRQ(PetscObjectComm((PetscObject)mesh), PETSC_ERR_USER_INPUT, "%s: there is no side \"%s\"; a box has left, right, bottom, top", key,
-          name);
+  SETERRQ(PetscObjectComm((PetscObject)mesh), PETSC_ERR_USER_INPUT, "%s: there is no side \"%s\"; %s has %s", key, name,
+          mesh->first ? mesh->first->path : "a box", all);
+}
+
+static PetscErrorCode AbutFirstGetSideEnds_Private(AbutMesh mesh, PetscInt side, PetscReal ends[4], PetscReal normal[2])
+{
+  const PetscReal *x;
+  PetscReal        length;
+  PetscInt         n;
+  PetscBool        straight;
+
+  PetscFunctionBegin;
+  PetscCall(AbutMeshIsSideStraight(mesh, side, &straight));
+  AbutCheckInput(straight, PetscObjectComm((PetscObject)mesh),
+                 "%smesh_file: side \"%s\" of %s is not one straight line; give a side that is",
+                 ((PetscObject)mesh)->prefix ? ((PetscObject)mesh)->prefix : "", mesh->first->name[side], mesh->first->path);
+  PetscCall(AbutMeshGetSideSegments(mesh, side, &n, &x));
+  for (PetscInt d = 0; d < 2; ++d) {
+    ends[d]     = x[d];
+    ends[2 + d] = x[4 * n - 2 + d];
+  }
+  length    = PetscSqrtReal(PetscSqr(ends[2] - ends[0]) + PetscSqr(ends[3] - ends[1]));
+  normal[0] = (ends[3] - ends[1]) / length;
+  normal[1] = (ends[0] - ends[2]) / length;
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
@@ -139,14 +175,21 @@ PetscErrorCode AbutMeshFindSide(AbutMesh mesh, const char key[], const char name
 
    Level: developer
 
-.seealso: `AbutMeshFindSide()`
+   Note:
+   A side of a file that is not one straight line is bad input.
+
+.seealso: `AbutMeshFindSide()`, `AbutMeshGetSideSegments()`, `AbutMeshIsSideStraight()`
 @*/
 PetscErrorCode AbutMeshGetSideEnds(AbutMesh mesh, PetscInt side, PetscReal ends[4], PetscReal normal[2])
 {
-  const PetscInt  d = side / 2, forward = d ? side % 2 == 0 : side % 2; /* bottom and right run upwards along their coordinate */
+  const PetscInt  d = side / 2 % 2, forward = d ? side % 2 == 0 : side % 2; /* bottom and right run upwards along their coordinate */
   const PetscReal at = side % 2 ? mesh->upper[d] : mesh->lower[d];
 
   PetscFunctionBegin;
+  if (mesh->first) {
+    PetscCall(AbutFirstGetSideEnds_Private(mesh, side, ends, normal));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   ends[d] = ends[2 + d] = at;
   ends[!d]              = forward ? mesh->lower[!d] : mesh->upper[!d];
   ends[2 + !d]          = forward ? mesh->upper[!d] : mesh->lower[!d];
@@ -155,8 +198,8 @@ PetscErrorCode AbutMeshGetSideEnds(AbutMesh mesh, PetscInt side, PetscReal ends[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@C
-   AbutMeshGetSidePolygon - The points of a side in the first mesh; the mesh need not be set up
+/*@
+   AbutMeshGetSideDirection - The mean of the outward normals of a side; the mesh need not be set up
 
    Not Collective
 
@@ -164,21 +207,29 @@ PetscErrorCode AbutMeshGetSideEnds(AbutMesh mesh, PetscInt side, PetscReal ends[
 +  mesh - the mesh
 -  side - number of the side
 
-   Output Parameters:
-+  n - how many points; 2 for a side of a box
--  x - [2*n] the points in order, with the body on the left, owned by the mesh
+   Output Parameter:
+.  normal - [2] unit vector: across the line from the first to the last point; that of the first segment if the side closes on itself
 
    Level: developer
 
-.seealso: `AbutMeshGetSideEnds()`
+.seealso: `AbutMeshGetSideEnds()`, `AbutMeshGetSideSegments()`
 @*/
-PetscErrorCode AbutMeshGetSidePolygon(AbutMesh mesh, PetscInt side, PetscInt *n, const PetscReal *x[])
+PetscErrorCode AbutMeshGetSideDirection(AbutMesh mesh, PetscInt side, PetscReal normal[2])
 {
-  PetscReal normal[2];
+  const PetscReal *x;
+  PetscReal        d[2] = {0., 0.}, length = 0., h;
+  PetscInt         n;
 
   PetscFunctionBegin;
-  PetscCall(AbutMeshGetSideEnds(mesh, side, mesh->sideends[side], normal));
-  *n = 2;
-  *x = mesh->sideends[side];
+  PetscCall(AbutMeshGetSideSegments(mesh, side, &n, &x));
+  for (PetscInt k = 0; k < n; ++k) {
+    for (PetscInt i = 0; i < 2; ++i) d[i] += x[4 * k + 2 + i] - x[4 * k + i];
+    length += PetscSqrtReal(PetscSqr(x[4 * k + 2] - x[4 * k]) + PetscSqr(x[4 * k + 3] - x[4 * k + 1]));
+  }
+  if (PetscSqrtReal(d[0] * d[0] + d[1] * d[1]) < 1e-3 * length)
+    for (PetscInt i = 0; i < 2; ++i) d[i] = x[2 + i] - x[i];
+  h         = PetscSqrtReal(d[0] * d[0] + d[1] * d[1]);
+  normal[0] = d[1] / h;
+  normal[1] = -d[0] / h;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -21,6 +21,7 @@ static PetscErrorCode AbutMeshCheckSize_Private(AbutMesh mesh)
   PetscReal       cells    = 0.;
 
   PetscFunctionBegin;
+  if (mesh->first) PetscFunctionReturn(PETSC_SUCCESS); /* the grid would leave the body: every round asks its cells */
   for (PetscInt i = 0; i <= ABUT_GRID; ++i)
     for (PetscInt j = 0; j <= ABUT_GRID; ++j) {
       const PetscReal x[2] = {mesh->lower[0] + i * width[0] / ABUT_GRID, mesh->lower[1] + j * width[1] / ABUT_GRID};
@@ -61,7 +62,7 @@ static PetscErrorCode AbutMeshMarkSize_Private(AbutMesh mesh, PetscBool mark[], 
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 2, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)mesh)));
   AbutCheckInput(!count[1], PetscObjectComm((PetscObject)mesh),
-                 "%smesh_size: not a length somewhere in the box; give an expression above 0 everywhere, for example "
+                 "%smesh_size: not a length somewhere in the body; give an expression above 0 everywhere, for example "
                  "max(0.01,0.2*abs(x-1))",
                  ((PetscObject)mesh)->prefix);
   *marked = count[0];

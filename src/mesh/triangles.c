@@ -1,5 +1,5 @@
-#include <abut/private/meshimpl.h>
-#include <petscdmplextransform.h>
+#include "bisections.h"
+#include "first.h"
 
 /* Triangles: DMPlex, refined by bisection (DMPLEXREFINESBR), which keeps the mesh conforming and its angles bounded */
 
@@ -12,7 +12,7 @@ static PetscReal AbutTrianglesCurve_Private(AbutMesh mesh, const PetscReal x[2])
                   steps = (PetscReal)(1 << ABUT_CURVE_BITS);
   PetscReal s[2], at = 0.;
 
-  for (PetscInt d = 0; d < 2; ++d) s[d] = PetscMin(PetscFloorReal((x[d] - mesh->lower[d]) / size * steps), steps - 1.);
+  for (PetscInt d = 0; d < 2; ++d) s[d] = PetscMax(0., PetscMin(PetscFloorReal((x[d] - mesh->lower[d]) / size * steps), steps - 1.));
   for (PetscInt bit = ABUT_CURVE_BITS - 1; bit >= 0; --bit)
     at = 4. * at + 2. * (((PetscInt)s[1] >> bit) & 1) + (((PetscInt)s[0] >> bit) & 1);
   return at;
@@ -99,36 +99,55 @@ static PetscErrorCode AbutTrianglesDistribute_Private(AbutMesh mesh, DM *dm)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Every cell of the grid is cut along its rising diagonal; the mesh is made on the first rank and distributed */
-static PetscErrorCode AbutMeshCreate_Triangles_DM(AbutMesh mesh, DM *dm)
+/* Every cell of the grid is cut along its rising diagonal */
+static PetscErrorCode AbutTrianglesGrid_Private(AbutMesh mesh, PetscInt *nc, PetscInt *nv, PetscInt **cell, PetscReal **xy)
 {
   const PetscInt nx = mesh->cells[0], ny = mesh->cells[1];
-  PetscMPIInt    rank;
-  PetscInt       nc, nv, *cell, k = 0;
-  PetscReal     *xy;
+  PetscInt       k = 0;
 
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_rank(PetscObjectComm((PetscObject)mesh), &rank));
-  nc = rank ? 0 : 2 * nx * ny;
-  nv = rank ? 0 : (nx + 1) * (ny + 1);
-  PetscCall(PetscMalloc2(3 * nc, &cell, 2 * nv, &xy));
-  for (PetscInt v = 0; v < nv; ++v) {
-    xy[2 * v]     = AbutMeshGridLine_Private(mesh, 0, v % (nx + 1));
-    xy[2 * v + 1] = AbutMeshGridLine_Private(mesh, 1, v / (nx + 1));
+  *nc = 2 * nx * ny;
+  *nv = (nx + 1) * (ny + 1);
+  PetscCall(PetscMalloc1(3 * *nc, cell));
+  PetscCall(PetscMalloc1(2 * *nv, xy));
+  for (PetscInt v = 0; v < *nv; ++v) {
+    (*xy)[2 * v]     = AbutMeshGridLine_Private(mesh, 0, v % (nx + 1));
+    (*xy)[2 * v + 1] = AbutMeshGridLine_Private(mesh, 1, v / (nx + 1));
   }
-  for (PetscInt q = 0; q < nc / 2; ++q) {
+  for (PetscInt q = 0; q < *nc / 2; ++q) {
     const PetscInt v = q / nx * (nx + 1) + q % nx, corner[6] = {v, v + 1, v + nx + 2, v, v + nx + 2, v + nx + 1};
 
-    for (PetscInt i = 0; i < 6; ++i) cell[k++] = corner[i];
+    for (PetscInt i = 0; i < 6; ++i) (*cell)[k++] = corner[i];
   }
-  PetscCall(DMPlexCreateFromCellListPetsc(PetscObjectComm((PetscObject)mesh), 2, nc, nv, 3, PETSC_TRUE, cell, 2, xy, dm));
-  PetscCall(PetscFree2(cell, xy));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The mesh is made on the first rank and distributed */
+static PetscErrorCode AbutMeshCreate_Triangles_DM(AbutMesh mesh, DM *dm)
+{
+  MPI_Comm    comm = PetscObjectComm((PetscObject)mesh);
+  PetscMPIInt rank;
+  PetscInt    nc = 0, nv = 0, *cell = NULL;
+  PetscReal  *xy = NULL;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (mesh->first && !rank)
+    PetscCall(DMPlexCreateFromCellListPetsc(comm, 2, mesh->first->ncells, mesh->first->nvertices, 3, PETSC_TRUE, mesh->first->cell, 2,
+                                            mesh->first->x, dm));
+  else {
+    if (!rank) PetscCall(AbutTrianglesGrid_Private(mesh, &nc, &nv, &cell, &xy));
+    PetscCall(DMPlexCreateFromCellListPetsc(comm, 2, nc, nv, 3, PETSC_TRUE, cell, 2, xy, dm));
+  }
+  PetscCall(PetscFree(cell));
+  PetscCall(PetscFree(xy));
+  if (mesh->first) PetscCall(AbutBisectionsBegin_Private(mesh, *dm));
   PetscCall(AbutTrianglesDistribute_Private(mesh, dm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Bisects the labelled sides, and those of labelled cells */
-PetscErrorCode AbutTrianglesSplit_Private(DM old, DMLabel active, DM *dm)
+PetscErrorCode AbutTrianglesSplit_Private(AbutMesh mesh, DM old, DMLabel active, DM *dm)
 {
   DMPlexTransform transform;
 
@@ -139,6 +158,7 @@ PetscErrorCode AbutTrianglesSplit_Private(DM old, DMLabel active, DM *dm)
   PetscCall(DMPlexTransformSetActive(transform, active));
   PetscCall(DMPlexTransformSetUp(transform));
   PetscCall(DMPlexTransformApply(transform, old, dm));
+  if (mesh->first) PetscCall(AbutBisectionsFollow_Private(mesh, transform, old, *dm));
   PetscCall(DMPlexTransformDestroy(&transform));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -158,7 +178,7 @@ static PetscErrorCode AbutMeshRefine_Triangles(AbutMesh mesh, const PetscBool ma
     any = PETSC_TRUE;
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPIU_BOOL, MPI_LOR, PetscObjectComm((PetscObject)mesh)));
-  if (any) PetscCall(AbutTrianglesSplit_Private(mesh->dm, active, dm));
+  if (any) PetscCall(AbutTrianglesSplit_Private(mesh, mesh->dm, active, dm));
   PetscCall(DMLabelDestroy(&active));
   if (mesh->coarsen) PetscCall(AbutTrianglesMerge_Private(mesh, marks, dm));
   if (*dm != mesh->dm) PetscCall(AbutTrianglesDistribute_Private(mesh, dm));
@@ -173,6 +193,10 @@ static PetscErrorCode AbutMeshGetLevels_Triangles(AbutMesh mesh, PetscInt level[
   PetscReal area;
 
   PetscFunctionBegin;
+  if (mesh->first) {
+    PetscCall(AbutBisectionsGetLevels_Private(mesh, level));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   for (PetscInt c = 0; c < mesh->topology.ncells; ++c) {
     PetscCall(AbutMeshGetCellArea(mesh, c, &area));
     level[c] = (PetscInt)PetscCeilReal(0.5 * PetscLog2Real(first / area) - 0.1);
@@ -210,6 +234,7 @@ PetscErrorCode AbutMeshCreate_Triangles(AbutMesh mesh)
   mesh->ops->keepfirst = AbutMeshKeepFirst_Triangles;
   mesh->ops->refine    = AbutMeshRefine_Triangles;
   mesh->ops->getlevels = AbutMeshGetLevels_Triangles;
+  mesh->ops->getsides  = AbutMeshGetSides_Triangles;
   mesh->ops->destroy   = AbutMeshDestroy_Triangles;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

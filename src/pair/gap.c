@@ -12,7 +12,7 @@
 -  x    - [2] the point
 
    Output Parameter:
-.  gap - f, length; without `-NAME_pair_gap` the distance of the sides
+.  gap - f, length; without `-NAME_pair_gap` the distance of the sides; less what the sides stand out
 
    Level: intermediate
 
@@ -21,11 +21,22 @@
 PetscErrorCode AbutPairGetGap(AbutPair pair, const PetscReal x[2], PetscReal *gap)
 {
   PetscFunctionBegin;
-  if (pair->gap) {
-    PetscCall(AbutExpressionEvaluate(pair->gap, x, gap));
-    PetscFunctionReturn(PETSC_SUCCESS);
+  if (pair->gap) PetscCall(AbutExpressionEvaluate(pair->gap, x, gap));
+  else PetscCall(AbutPairGetDistance_Private(pair, gap));
+  PetscCall(AbutPairCloseGap_Private(pair, x, gap));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Sides that stand out of their bodies leave less of a gap */
+PetscErrorCode AbutPairCloseGap_Private(AbutPair pair, const PetscReal x[2], PetscReal *gap)
+{
+  PetscFunctionBegin;
+  for (PetscInt s = 0; s < 2 && pair->body[s]; ++s) {
+    PetscReal offset;
+
+    PetscCall(AbutBodyGetSideOffset(pair->body[s], pair->side[s], x, &offset));
+    *gap -= offset;
   }
-  PetscCall(AbutPairGetDistance_Private(pair, gap));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -98,7 +109,7 @@ PetscErrorCode AbutPairObstacleGap_Private(AbutPair pair, const PetscReal x[2], 
 -  i    - number of the node on the pressure side
 
    Output Parameter:
-.  gap - f, length; where it is the distance of curved sides, its mean with the node's dual function, and 0 at nodes that carry no pressure
+.  gap - f, length; 0 at nodes that carry no pressure
 
    Level: intermediate
 
@@ -106,9 +117,21 @@ PetscErrorCode AbutPairObstacleGap_Private(AbutPair pair, const PetscReal x[2], 
 @*/
 PetscErrorCode AbutPairGetNodeGap(AbutPair pair, PetscInt i, PetscReal *gap)
 {
+  const AbutSide  *m = pair->nodes[pair->which], *o = pair->body[1] ? pair->nodes[!pair->which] : NULL;
+  const PetscReal *s = pair->place[1], place = pair->place[0][i];
+  PetscInt         element[2] = {PetscMin(i, m->n - 2) / m->order, 0}, high = o ? (o->n - 1) / o->order : 0;
+  PetscReal        at[2], normal[2];
+
   PetscFunctionBegin;
-  if (!pair->obstacle && (pair->gap || pair->straight)) PetscCall(AbutPairGetGap(pair, pair->nodes[pair->which]->x + 2 * i, gap));
-  else *gap = pair->D[i] > 0. ? pair->F[i] / pair->D[i] : 0.;
+  *gap = 0.;
+  if (pair->D[i] <= 0.) PetscFunctionReturn(PETSC_SUCCESS);
+  while (high - element[1] > 1) { /* the other side's places descend */
+    const PetscInt middle = (element[1] + high) / 2;
+
+    if (s[o->order * middle] >= place) element[1] = middle;
+    else high = middle;
+  }
+  PetscCall(AbutPairFace_Private(pair, element, place, at, normal, gap));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -135,17 +158,18 @@ PetscErrorCode AbutPairCheck(AbutPair pair)
   AbutMesh             mesh;
   const PetscReal     *p;
   PetscReal            gap;
-  PetscInt             n;
+  PetscInt             n, samples;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(pair, ABUTPAIR_CLASSID, 1);
   if (!given) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(AbutBodyGetMesh(pair->body[0], &mesh));
-  PetscCall(AbutMeshGetSidePolygon(mesh, pair->side[0], &n, &p));
-  for (PetscInt i = 0; i + 1 < n; ++i)
-    for (PetscInt k = 0; k < (n > 2 ? 2 : ABUT_SAMPLES); ++k) {
-      const PetscReal z    = k / (n > 2 ? 1. : ABUT_SAMPLES - 1.);
-      const PetscReal x[2] = {(1. - z) * p[2 * i] + z * p[2 * i + 2], (1. - z) * p[2 * i + 1] + z * p[2 * i + 3]};
+  PetscCall(AbutMeshGetSideSegments(mesh, pair->side[0], &n, &p));
+  samples = n > 1 ? 2 : ABUT_SAMPLES;
+  for (PetscInt i = 0; i < n; ++i)
+    for (PetscInt k = 0; k < samples; ++k) {
+      const PetscReal z    = n > 1 ? k : k / (ABUT_SAMPLES - 1.);
+      const PetscReal x[2] = {(1. - z) * p[4 * i] + z * p[4 * i + 2], (1. - z) * p[4 * i + 1] + z * p[4 * i + 3]};
 
       PetscCall(AbutExpressionEvaluate(given, x, &gap));
     }

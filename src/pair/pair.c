@@ -20,8 +20,8 @@ static const char *const AbutPressureSideNames[] = {"first", "second", "finer", 
 +  -NAME_pair_bodies <first,second> - names of the two bodies; E and H of the first give theta. One name: the other one is rigid
 .  -NAME_pair_sides <first,second>  - their sides, or the side of the one body
 .  -NAME_pair_gap <f>               - gap as number, formula in x and y, or CSV file, length; default: the distance of the sides
-.  -NAME_pair_obstacle <d>          - with one body: distance from a rigid obstacle at a point, positive where the body may be, formula in x and
-                                      y, length: y for the plane y = 0, sqrt(x^2+(y-8)^2)-8 for a disc
+.  -NAME_pair_obstacle <d>          - with one body: distance from a rigid obstacle, positive where the body may be, formula in x and y,
+                                      length: y for the plane y = 0, sqrt(x^2+(y-8)^2)-8 for a disc
 .  -NAME_pair_penalty <c>           - theta = c H/E, default 0.05; 0 for exact contact
 .  -NAME_pair_theta <theta>         - theta itself, length/stress
 .  -NAME_pair_friction <mu>        - coefficient of Coulomb friction; without it the pair is frictionless
@@ -108,11 +108,11 @@ static PetscErrorCode AbutPairSetTheta_Private(AbutPair pair)
   MPI_Comm    comm = PetscObjectComm((PetscObject)pair);
   const char *name = ((PetscObject)pair)->name;
   AbutMesh    mesh;
-  PetscReal   young, poisson, ends[4], normal[2];
+  PetscReal   young, poisson, normal[2];
 
   PetscFunctionBegin;
   PetscCall(AbutBodyGetMesh(pair->body[0], &mesh));
-  PetscCall(AbutMeshGetSideEnds(mesh, pair->side[0], ends, normal));
+  PetscCall(AbutMeshGetSideDirection(mesh, pair->side[0], normal));
   if (pair->height <= 0.) PetscCall(AbutBodyGetHeight(pair->body[0], normal, &pair->height));
   PetscCall(AbutBodyGetMaterial(pair->body[0], &young, &poisson));
   if (!pair->thetaset) pair->theta = pair->penalty * pair->height / young;
@@ -456,12 +456,12 @@ PetscErrorCode AbutPairGetCompliance(AbutPair pair, PetscReal compliance[2])
   compliance[1] = 0.;
   for (PetscInt s = 0; s < 2 && pair->body[s]; ++s) {
     AbutMesh  mesh;
-    PetscReal ends[4], normal[2], height, young, poisson;
+    PetscReal normal[2], height, young, poisson;
 
     PetscCall(AbutBodyGetMesh(pair->body[s], &mesh));
-    PetscCall(AbutMeshGetSideEnds(mesh, pair->side[s], ends, normal));
+    PetscCall(AbutMeshGetSideDirection(mesh, pair->side[s], normal));
     PetscCall(AbutBodyGetHeight(pair->body[s], normal, &height));
-    PetscCall(AbutBodyGetMaterial(pair->body[s], &young, &poisson));
+    PetscCall(AbutBodyGetPlaneMaterial(pair->body[s], &young, &poisson));
     compliance[s] = height * (1. - poisson * poisson) / young;
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,8 +1,8 @@
 #include <abut/private/pairimpl.h>
 
-/* How the two sides of a pair lie against each other. Along straight sides one coordinate serves both. Along curved ones, which are polygons
-   here, every point of the pressure side looks along a direction that runs continuously from vertex to vertex (the mean of the normals there)
-   and sees at most one point of the other side; there is one normal for both. */
+/* How the two sides of a pair lie against each other. Along straight sides one coordinate serves both. Along curved ones, which are
+   polygons here, every point of the pressure side looks along a direction that runs continuously from vertex to vertex (the mean of the
+   normals there) and sees at most one point of the other side; there is one normal for both. */
 
 static PetscReal AbutCross_Private(const PetscReal a[2], const PetscReal b[2])
 {
@@ -139,6 +139,26 @@ void AbutPairPointAt_Private(AbutPair pair, PetscReal place, PetscReal x[2])
   for (PetscInt d = 0; d < 2; ++d) x[d] = (1. - t) * m->x[2 * low + d] + t * m->x[2 * high + d];
 }
 
+/* The distance of two points that see each other along a normal, as if they lay on the curves of their sides and not on polygons */
+static PetscErrorCode AbutPairCurvedGap_Private(AbutPair pair, const PetscReal x[2], const PetscReal y[2], const PetscReal normal[2],
+                                                PetscReal *gap)
+{
+  const PetscReal *at[2] = {x, y};
+
+  PetscFunctionBegin;
+  *gap = 0.;
+  for (PetscInt k = 0; k < 2; ++k) {
+    const PetscInt s = k ? !pair->which : pair->which;
+    AbutMesh       mesh;
+    PetscReal      foot[2];
+
+    PetscCall(AbutBodyGetMesh(pair->body[s], &mesh));
+    PetscCall(AbutMeshGetCurvePoint(mesh, pair->side[s], at[k], foot));
+    for (PetscInt d = 0; d < 2; ++d) *gap += (k ? 1. : -1.) * foot[d] * normal[d];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* What the point at a place, in element[0] of the pressure side, sees of element[1] of the other one: where it is there, in [-1,1]; and the
    gap. normal: the direction in which it looks, outward. */
 PetscErrorCode AbutPairFace_Private(AbutPair pair, const PetscInt element[2], PetscReal place, PetscReal at[2], PetscReal normal[2],
@@ -147,7 +167,7 @@ PetscErrorCode AbutPairFace_Private(AbutPair pair, const PetscInt element[2], Pe
   const AbutSide  *m = pair->nodes[pair->which], *o = pair->body[1] ? pair->nodes[!pair->which] : NULL;
   const PetscInt   first = m->order * element[0], second = o ? o->order * element[1] : 0;
   const PetscReal *s = pair->place[0], a = s[first], b = s[first + m->order];
-  PetscReal        x[2], t = (place - a) / (b - a), distance = 0., size;
+  PetscReal        x[2], y[2] = {0., 0.}, t = (place - a) / (b - a), size;
 
   PetscFunctionBegin;
   at[0] = 2. * t - 1.;
@@ -166,12 +186,17 @@ PetscErrorCode AbutPairFace_Private(AbutPair pair, const PetscInt element[2], Pe
       const PetscReal *p = o->x + 2 * second, *q = o->x + 2 * (second + o->order), d[2] = {q[0] - p[0], q[1] - p[1]};
       const PetscReal  r[2] = {x[0] - p[0], x[1] - p[1]}, share = AbutCross_Private(r, normal) / AbutCross_Private(d, normal);
 
-      at[1]    = PetscMin(1., PetscMax(-1., 2. * share - 1.));
-      distance = (share * d[0] - r[0]) * normal[0] + (share * d[1] - r[1]) * normal[1];
+      at[1] = PetscMin(1., PetscMax(-1., 2. * share - 1.));
+      y[0]  = p[0] + share * d[0];
+      y[1]  = p[1] + share * d[1];
     }
   }
+  if (!pair->obstacle && (pair->gap || pair->straight)) {
+    PetscCall(AbutPairGetGap(pair, x, gap));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   if (pair->obstacle) PetscCall(AbutPairObstacleGap_Private(pair, x, normal, gap));
-  else if (pair->gap || pair->straight) PetscCall(AbutPairGetGap(pair, x, gap));
-  else *gap = distance;
+  else PetscCall(AbutPairCurvedGap_Private(pair, x, y, normal, gap));
+  PetscCall(AbutPairCloseGap_Private(pair, x, gap));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

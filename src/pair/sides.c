@@ -1,6 +1,6 @@
 #include <abut/private/pairimpl.h> /*I "abutpair.h" I*/
 
-/* The two sides of a pair before there are meshes: polygons, of two points if they are straight */
+/* The two sides of a pair before there are meshes: segments, one of them if they are those of a box */
 
 /* Two straight sides that are opposite to each other */
 typedef struct {
@@ -10,42 +10,25 @@ typedef struct {
   PetscReal length;                   /* of the first side */
 } AbutPairSides;
 
-static PetscErrorCode AbutPairGetPolygon_Private(AbutPair pair, PetscInt s, PetscInt *n, const PetscReal *x[])
+/* [4*n] the ends of the segments of one side */
+static PetscErrorCode AbutPairGetSegments_Private(AbutPair pair, PetscInt s, PetscInt *n, const PetscReal *x[])
 {
   AbutMesh mesh;
 
   PetscFunctionBegin;
   PetscCall(AbutBodyGetMesh(pair->body[s], &mesh));
-  PetscCall(AbutMeshGetSidePolygon(mesh, pair->side[s], n, x));
+  PetscCall(AbutMeshGetSideSegments(mesh, pair->side[s], n, x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Outward normal of piece i of a polygon, and its length */
-static void AbutPieceNormal_Private(const PetscReal x[], PetscInt i, PetscReal normal[2], PetscReal *length)
+/* Outward normal of a segment, and its length */
+static void AbutSegmentGetNormal_Private(const PetscReal x[4], PetscReal normal[2], PetscReal *length)
 {
-  const PetscReal d[2] = {x[2 * i + 2] - x[2 * i], x[2 * i + 3] - x[2 * i + 1]};
+  const PetscReal d[2] = {x[2] - x[0], x[3] - x[1]};
 
   *length   = PetscSqrtReal(d[0] * d[0] + d[1] * d[1]);
   normal[0] = d[1] / *length;
   normal[1] = -d[0] / *length;
-}
-
-/* Is a side straight: are the normals of all its pieces the same? */
-static PetscErrorCode AbutPairSideIsStraight_Private(AbutPair pair, PetscInt s, PetscBool *straight)
-{
-  const PetscReal *x;
-  PetscReal        first[2], normal[2], length;
-  PetscInt         n;
-
-  PetscFunctionBegin;
-  PetscCall(AbutPairGetPolygon_Private(pair, s, &n, &x));
-  AbutPieceNormal_Private(x, 0, first, &length);
-  *straight = PETSC_TRUE;
-  for (PetscInt i = 1; i + 1 < n; ++i) {
-    AbutPieceNormal_Private(x, i, normal, &length);
-    if (PetscAbsReal(normal[0] - first[0]) + PetscAbsReal(normal[1] - first[1]) > 1e-9) *straight = PETSC_FALSE;
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode AbutPairGetSides_Private(AbutPair pair, AbutPairSides *f)
@@ -92,7 +75,12 @@ static PetscErrorCode AbutPairAreStraight_Private(AbutPair pair, PetscBool *stra
   PetscBool one[2] = {PETSC_TRUE, PETSC_TRUE};
 
   PetscFunctionBegin;
-  for (PetscInt s = 0; s < 2 && pair->body[s]; ++s) PetscCall(AbutPairSideIsStraight_Private(pair, s, &one[s]));
+  for (PetscInt s = 0; s < 2 && pair->body[s]; ++s) {
+    AbutMesh mesh;
+
+    PetscCall(AbutBodyGetMesh(pair->body[s], &mesh));
+    PetscCall(AbutMeshIsSideStraight(mesh, pair->side[s], &one[s]));
+  }
   *straight = (PetscBool)(one[0] && one[1]);
   if (*straight && pair->body[1]) {
     AbutPairSides f;
@@ -103,7 +91,7 @@ static PetscErrorCode AbutPairAreStraight_Private(AbutPair pair, PetscBool *stra
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The nearest point of the second side to x, and whether the piece it is on faces the normal: not so where the side has ended */
+/* The nearest point of the second side to x, and whether the segment it is on faces the normal: not so where the side has ended */
 static PetscErrorCode AbutPairNearestOther_Private(AbutPair pair, const PetscReal x[2], const PetscReal normal[2], PetscReal foot[2],
                                                    PetscReal *distance, PetscBool *faces)
 {
@@ -112,18 +100,18 @@ static PetscErrorCode AbutPairNearestOther_Private(AbutPair pair, const PetscRea
   PetscInt         n;
 
   PetscFunctionBegin;
-  PetscCall(AbutPairGetPolygon_Private(pair, 1, &n, &p));
+  PetscCall(AbutPairGetSegments_Private(pair, 1, &n, &p));
   *faces = PETSC_FALSE;
-  for (PetscInt i = 0; i + 1 < n; ++i) {
+  for (PetscInt i = 0; i < n; ++i, p += 4) {
     PetscReal own[2], length, t, at[2], r;
 
-    AbutPieceNormal_Private(p, i, own, &length);
-    t = (-own[1] * (x[0] - p[2 * i]) + own[0] * (x[1] - p[2 * i + 1])) / length;
-    for (PetscInt d = 0; d < 2; ++d) at[d] = p[2 * i + d] + PetscMin(1., PetscMax(0., t)) * (p[2 * i + 2 + d] - p[2 * i + d]);
+    AbutSegmentGetNormal_Private(p, own, &length);
+    t = (-own[1] * (x[0] - p[0]) + own[0] * (x[1] - p[1])) / length;
+    for (PetscInt d = 0; d < 2; ++d) at[d] = p[d] + PetscMin(1., PetscMax(0., t)) * (p[2 + d] - p[d]);
     r = PetscSqrtReal(PetscSqr(at[0] - x[0]) + PetscSqr(at[1] - x[1]));
     if (r >= best) continue;
     best   = r;
-    *faces = (PetscBool)(own[0] * normal[0] + own[1] * normal[1] < -0.1 && (i > 0 || t >= 0.) && (i + 2 < n || t <= 1.));
+    *faces = (PetscBool)(own[0] * normal[0] + own[1] * normal[1] < -0.1 && (i > 0 || t >= 0.) && (i + 1 < n || t <= 1.));
     for (PetscInt d = 0; d < 2; ++d) foot[d] = at[d];
   }
   *distance = best;
@@ -139,8 +127,8 @@ static PetscErrorCode AbutPairNearestOther_Private(AbutPair pair, const PetscRea
 .  pair - the pair, its keys read
 
    Output Parameters:
-+  n - how many: the two ends of the shared part of straight sides, which say all of rigid motions; otherwise one for each piece of the first
-       side that faces the second
++  n - how many: the two ends of the shared part of straight sides, which say all of rigid motions; otherwise one for each segment of the
+       first side that faces the second
 -  x - [6*n] for each: the point on the first side, that on the second, and the outward normal of the first; free it with `PetscFree()`
 
    Level: developer
@@ -150,13 +138,13 @@ static PetscErrorCode AbutPairNearestOther_Private(AbutPair pair, const PetscRea
 PetscErrorCode AbutPairGetSharedPoints(AbutPair pair, PetscInt *n, PetscReal *x[])
 {
   const PetscReal *p;
-  PetscInt         points;
+  PetscInt         segments;
   PetscBool        straight, faces = PETSC_TRUE;
 
   PetscFunctionBegin;
   PetscCall(AbutPairAreStraight_Private(pair, &straight));
-  PetscCall(AbutPairGetPolygon_Private(pair, 0, &points, &p));
-  PetscCall(PetscCalloc1(6 * PetscMax(2, points), x));
+  PetscCall(AbutPairGetSegments_Private(pair, 0, &segments, &p));
+  PetscCall(PetscCalloc1(12 * segments, x));
   *n = 0;
   if (straight && pair->body[1]) {
     AbutPairSides f;
@@ -172,16 +160,15 @@ PetscErrorCode AbutPairGetSharedPoints(AbutPair pair, PetscInt *n, PetscReal *x[
     }
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  for (PetscInt i = 0; i + 1 < points; ++i)
-    for (PetscInt end = 0; end < (straight && points == 2 ? 2 : 1); ++end) {
-      PetscReal *at = *x + 6 * *n, length, distance;
+  for (PetscInt k = 0; k < 2 * segments; ++k) { /* the ends of straight segments, the middles of others */
+    PetscReal *at = *x + 6 * *n, length, distance;
 
-      AbutPieceNormal_Private(p, i, at + 4, &length);
-      for (PetscInt d = 0; d < 2; ++d)
-        at[d] = at[2 + d] = straight && points == 2 ? p[2 * end + d] : 0.5 * (p[2 * i + d] + p[2 * i + 2 + d]);
-      if (pair->body[1]) PetscCall(AbutPairNearestOther_Private(pair, at, at + 4, at + 2, &distance, &faces));
-      if (faces) ++*n;
-    }
+    if (!straight && k % 2) continue;
+    AbutSegmentGetNormal_Private(p + 4 * (k / 2), at + 4, &length);
+    for (PetscInt d = 0; d < 2; ++d) at[d] = at[2 + d] = straight ? p[2 * k + d] : 0.5 * (p[2 * k + d] + p[2 * k + 2 + d]);
+    if (pair->body[1]) PetscCall(AbutPairNearestOther_Private(pair, at, at + 4, at + 2, &distance, &faces));
+    if (faces) ++*n;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -213,7 +200,7 @@ PetscErrorCode AbutPairCheckFacing_Private(AbutPair pair)
   const char      *name = ((PetscObject)pair)->name, *body[2];
   const PetscReal *p;
   PetscReal       *x, length = 0., nearest = PETSC_MAX_REAL;
-  PetscInt         n, points;
+  PetscInt         n, segments;
   PetscBool        straight;
 
   PetscFunctionBegin;
@@ -228,12 +215,12 @@ PetscErrorCode AbutPairCheckFacing_Private(AbutPair pair)
   for (PetscInt i = 0; i < n; ++i)
     nearest = PetscMin(nearest, PetscSqrtReal(PetscSqr(x[6 * i] - x[6 * i + 2]) + PetscSqr(x[6 * i + 1] - x[6 * i + 3])));
   PetscCall(PetscFree(x));
-  PetscCall(AbutPairGetPolygon_Private(pair, 0, &points, &p));
-  for (PetscInt i = 0; i + 1 < points; ++i) {
-    PetscReal normal[2], piece;
+  PetscCall(AbutPairGetSegments_Private(pair, 0, &segments, &p));
+  for (PetscInt i = 0; i < segments; ++i) {
+    PetscReal normal[2], one;
 
-    AbutPieceNormal_Private(p, i, normal, &piece);
-    length += piece;
+    AbutSegmentGetNormal_Private(p + 4 * i, normal, &one);
+    length += one;
   }
   AbutCheckInput(n > 0 && nearest < 0.1 * length, PetscObjectComm((PetscObject)pair),
                  "%s_pair_sides: bodies \"%s\" and \"%s\" share no part of these sides; give sides that lie against each other, for "

@@ -128,6 +128,19 @@ static PetscErrorCode AbutRecorderWriteProfileTo_Private(AbutRecorder rec, const
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* FILE.csv as FILE_0000.csv, FILE_step_0001.csv */
+static PetscErrorCode AbutRecorderWriteNumberedProfile_Private(AbutRecorder rec, const char kind[], PetscInt number, AbutInterface iface,
+                                                               PetscInt npairs, AbutPair pairs[])
+{
+  const int stem = (int)(strlen(rec->profile_file) - strlen(".csv"));
+  char      path[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(path, sizeof(path), "%.*s%s_%04" PetscInt_FMT ".csv", stem, rec->profile_file, kind, number));
+  PetscCall(AbutRecorderWriteProfileTo_Private(rec, path, iface, npairs, pairs));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
    AbutRecorderWriteProfile - Writes the traces and pressures along every pair on the present mesh
 
@@ -140,7 +153,8 @@ static PetscErrorCode AbutRecorderWriteProfileTo_Private(AbutRecorder rec, const
 -  pairs   - [npairs] the pairs, as given to `AbutInterfaceCreate()`
 
    Options Database Key:
-.  -output_profile FILE.csv - where; without it nothing is done
+.  -output_profile FILE.csv - where; without it nothing is done. With `AbutRecorderSetStep()` the same goes to FILE_step_0001.csv, with the
+                              number of the step
 
    Level: intermediate
 
@@ -161,7 +175,9 @@ PetscErrorCode AbutRecorderWriteProfile(AbutRecorder rec, AbutInterface iface, P
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(rec, ABUTRECORDER_CLASSID, 1);
-  if (rec->profile_file) PetscCall(AbutRecorderWriteProfileTo_Private(rec, rec->profile_file, iface, npairs, pairs));
+  if (!rec->profile_file) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AbutRecorderWriteProfileTo_Private(rec, rec->profile_file, iface, npairs, pairs));
+  if (rec->step) PetscCall(AbutRecorderWriteNumberedProfile_Private(rec, "_step", rec->step, iface, npairs, pairs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -186,14 +202,8 @@ PetscErrorCode AbutRecorderWriteProfile(AbutRecorder rec, AbutInterface iface, P
 @*/
 PetscErrorCode AbutRecorderWriteCycleProfile(AbutRecorder rec, PetscInt cycle, AbutInterface iface, PetscInt npairs, AbutPair pairs[])
 {
-  char   path[PETSC_MAX_PATH_LEN];
-  size_t stem;
-
   PetscFunctionBegin;
   PetscValidHeaderSpecific(rec, ABUTRECORDER_CLASSID, 1);
-  if (!rec->profile_cycles) PetscFunctionReturn(PETSC_SUCCESS);
-  stem = strlen(rec->profile_file) - strlen(".csv");
-  PetscCall(PetscSNPrintf(path, sizeof(path), "%.*s_%04" PetscInt_FMT ".csv", (int)stem, rec->profile_file, cycle));
-  PetscCall(AbutRecorderWriteProfileTo_Private(rec, path, iface, npairs, pairs));
+  if (rec->profile_cycles) PetscCall(AbutRecorderWriteNumberedProfile_Private(rec, "", cycle, iface, npairs, pairs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -9,9 +9,14 @@ PetscErrorCode AbutSceneWarnOfOverlap_Private(AbutScene scene)
   for (PetscInt i = 0; i < scene->npairs; ++i) {
     PetscReal   depth, x[2];
     const char *name;
+    AbutBody    body[2];
+    PetscInt    side[2];
+    PetscBool   meant[2] = {PETSC_FALSE, PETSC_FALSE};
 
+    PetscCall(AbutPairGetBodies(scene->pair[i], body, side));
+    for (PetscInt s = 0; s < 2 && body[s]; ++s) PetscCall(AbutBodyHasSideOffset(body[s], side[s], &meant[s]));
     PetscCall(AbutPairGetOverlap(scene->pair[i], &depth, x));
-    if (depth == 0.) continue;
+    if (depth == 0. || meant[0] || meant[1]) continue;
     PetscCall(AbutPairGetName(scene->pair[i], &name));
     PetscCall(PetscPrintf(PetscObjectComm((PetscObject)scene),
                           "warning: pair %s: at first the sides overlap, by %.6g at (%.6g, %.6g), and contact pushes them apart; if this "
@@ -122,8 +127,9 @@ static PetscErrorCode AbutScenePrintCost_Private(AbutScene scene)
                         scene->seconds[ABUT_TIME_ADAPT], scene->seconds[ABUT_TIME_OUTPUT]));
   PetscCall(AbutSceneGetUnknowns_Private(scene, &unknowns));
   if (scene->snes && !scene->interleave && scene->cycle > 1)
-    PetscCall(PetscPrintf(comm, "sweeps: %" PetscInt_FMT " on %" PetscInt_FMT " meshes, worth %.1f of the last mesh\n", scene->sweepsbefore,
-                          scene->cycle, (double)(scene->work / unknowns)));
+    PetscCall(PetscPrintf(comm, "sweeps: %" PetscInt_FMT " %s %" PetscInt_FMT " %s, worth %.1f of the last mesh\n", scene->sweepsbefore,
+                          scene->nsteps ? "in" : "on", scene->cycle, scene->nsteps ? "cycles" : "meshes",
+                          (double)(scene->work / unknowns)));
   PetscCall(PetscPrintf(comm, "element matrices and their insertion: %.2f microseconds a cell (%" PetscInt_FMT " cells)\n",
                         assembled ? (double)(1e6 * assembly / assembled) : 0., assembled));
   if (scene->ratio > 0.)

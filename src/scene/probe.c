@@ -7,11 +7,12 @@ PetscErrorCode AbutSceneProbesFromOptions_Private(AbutScene scene, PetscInt n, c
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < n; ++i) {
-    AbutProbe *probe = &scene->probe[scene->nprobes++];
-    char       prefix[128], body[128] = "";
-    PetscBool  hasbody, haspoint;
-    AbutMesh   mesh;
-    PetscReal  lower[2], upper[2];
+    AbutProbe  *probe = &scene->probe[scene->nprobes++];
+    char        prefix[128], body[128] = "";
+    const char *file;
+    PetscBool   hasbody, haspoint, inside;
+    AbutMesh    mesh;
+    PetscReal   lower[2], upper[2];
 
     PetscCall(PetscStrallocpy(names[i], &probe->name));
     PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", names[i]));
@@ -25,7 +26,11 @@ PetscErrorCode AbutSceneProbesFromOptions_Private(AbutScene scene, PetscInt n, c
     AbutCheckInput(probe->body, comm, "%s_probe_body: the scene has no body \"%s\"; give a name from scene_bodies", names[i], body);
     PetscCall(AbutBodyGetMesh(probe->body, &mesh));
     PetscCall(AbutMeshGetBox(mesh, lower, upper));
-    AbutCheckInput(probe->x[0] >= lower[0] && probe->x[0] <= upper[0] && probe->x[1] >= lower[1] && probe->x[1] <= upper[1], comm,
+    PetscCall(AbutMeshGetFile(mesh, &file));
+    PetscCall(AbutMeshCovers(mesh, probe->x, &inside));
+    AbutCheckInput(inside || !file, comm, "%s_probe_point: (%g, %g) lies outside \"%s\"; give a point of the cells of %s", names[i],
+                   (double)probe->x[0], (double)probe->x[1], body, file);
+    AbutCheckInput(file || (probe->x[0] >= lower[0] && probe->x[0] <= upper[0] && probe->x[1] >= lower[1] && probe->x[1] <= upper[1]), comm,
                    "%s_probe_point: (%g, %g) lies outside \"%s\"; give a point of its box [%g,%g]x[%g,%g]", names[i], (double)probe->x[0],
                    (double)probe->x[1], body, (double)lower[0], (double)upper[0], (double)lower[1], (double)upper[1]);
   }

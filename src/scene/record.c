@@ -13,13 +13,18 @@ static PetscErrorCode AbutSceneSetReal_Private(AbutScene scene, const char kind[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Unknowns of the uniform mesh whose cells are all as small as the smallest: what the adapted mesh is compared with */
+/* Unknowns of the uniform mesh of a box whose cells are all as small as the smallest: what the adapted mesh is compared with; 0 for a
+   file */
 static PetscErrorCode AbutSceneUniformUnknowns_Private(AbutMesh mesh, PetscReal h_min, PetscReal *n)
 {
-  PetscReal lower[2], upper[2];
-  PetscInt  p;
+  PetscReal   lower[2], upper[2];
+  PetscInt    p;
+  const char *file;
 
   PetscFunctionBegin;
+  PetscCall(AbutMeshGetFile(mesh, &file));
+  *n = 0.;
+  if (file) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(AbutMeshGetBox(mesh, lower, upper));
   PetscCall(AbutMeshGetOrder(mesh, &p));
   *n = 2. * (p * PetscFloorReal(0.5 + (upper[0] - lower[0]) / h_min) + 1.) * (p * PetscFloorReal(0.5 + (upper[1] - lower[1]) / h_min) + 1.);
@@ -78,7 +83,7 @@ static PetscErrorCode AbutSceneRecordBodies_Private(AbutScene scene)
     PetscCall(AbutSceneSetReal_Private(scene, "body", name, "regularity", m.regularity));
     PetscCall(AbutSceneSetReal_Private(scene, "body", name, "h_ratio", m.ratio));
     PetscCall(AbutSceneSetReal_Private(scene, "body", name, "lemma", m.lemma));
-    PetscCall(AbutSceneSetReal_Private(scene, "body", name, "unknowns_uniform", uniform));
+    if (uniform > 0.) PetscCall(AbutSceneSetReal_Private(scene, "body", name, "unknowns_uniform", uniform));
     PetscCall(AbutBodyGetIntegration(scene->body[b], &integration, NULL));
     PetscCall(PetscSNPrintf(key, sizeof(key), "body.%s.integration", name));
     PetscCall(AbutRecorderSetString(rec, key, integration));
@@ -237,6 +242,7 @@ PetscErrorCode AbutSceneRecord_Private(AbutScene scene, PetscBool last, PetscBoo
   PetscFunctionBegin;
   PetscCall(AbutRecorderSetString(scene->recorder, "verdict", scene->verdict));
   PetscCall(AbutRecorderSetInt(scene->recorder, "cycles", scene->cycle + 1));
+  PetscCall(AbutSceneRecordStep_Private(scene));
   PetscCall(AbutSceneRecordSweeps_Private(scene));
   AbutSceneBeginChecks_Private(scene);
   PetscCall(AbutSceneRecordBodies_Private(scene));

@@ -12,10 +12,16 @@ struct _AbutMeshOps {
      present one on entry, and stays it if nothing changes. */
   PetscErrorCode (*refine)(AbutMesh, const PetscBool[], DM *);
   PetscErrorCode (*getlevels)(AbutMesh, PetscInt[]); /* required: level of each local cell of the current DM */
-  PetscErrorCode (*destroy)(AbutMesh);               /* optional, frees data */
+  /* required for a mesh from a file: [corners*ncells] side of the body on which each side of a local cell lies, -1 for none */
+  PetscErrorCode (*getsides)(AbutMesh, PetscInt[]);
+  PetscErrorCode (*destroy)(AbutMesh); /* optional, frees data */
 };
 
-#define ABUT_BOX_SIDES 4
+#define ABUT_BOX_SIDES     4
+#define ABUT_SIDES_MAX     64 /* of a mesh from a file */
+#define ABUT_SIDE_NAME_MAX 64
+
+typedef struct _AbutFirst *AbutFirst; /* see first.h */
 
 typedef struct _AbutMeshStep *AbutMeshStep; /* see journal.c */
 
@@ -33,14 +39,15 @@ PETSC_INTERN void           AbutBasisEvaluate_Private(const AbutBasis *, const P
 
 struct _p_AbutMesh {
   PETSCHEADER(struct _AbutMeshOps);
-  PetscReal        lower[2], upper[2];
+  PetscReal        lower[2], upper[2]; /* of the box, or around the first mesh of a file */
   PetscInt         cells[2];
+  AbutFirst        first; /* the first mesh of a file, NULL: the grid of the box */
+  PetscReal        ends[ABUT_BOX_SIDES][4];
   AbutShape        shape;
   PetscInt         order;
-  PetscBool        boxset, setupcalled;
-  PetscReal        sideends[ABUT_BOX_SIDES][4]; /* first and last point of each side */
-  PetscBool        balance;                     /* at most one level between quads with a common side */
-  AbutExpression   size;                        /* wanted length of the cells of the first mesh, NULL: as they are */
+  PetscBool        shapeset, setupcalled; /* by a box or a file */
+  PetscBool        balance;               /* at most one level between quads with a common side */
+  AbutExpression   size;                  /* wanted length of the cells of the first mesh, NULL: as they are */
   DM               dm;
   PetscInt         generation; /* counts the meshes: 0 is the first */
   AbutBasis        basis;
@@ -72,7 +79,7 @@ static inline PetscReal AbutMeshGridLine_Private(AbutMesh mesh, PetscInt d, Pets
 
 PETSC_INTERN PetscErrorCode AbutMeshCreate_Forest(AbutMesh);
 PETSC_INTERN PetscErrorCode AbutMeshCreate_Triangles(AbutMesh);
-PETSC_INTERN PetscErrorCode AbutTrianglesSplit_Private(DM, DMLabel, DM *);
+PETSC_INTERN PetscErrorCode AbutTrianglesSplit_Private(AbutMesh, DM, DMLabel, DM *);
 PETSC_INTERN PetscErrorCode AbutTrianglesMerge_Private(AbutMesh, const PetscBool[], DM *);
 PETSC_INTERN PetscErrorCode AbutMeshRefineToSize_Private(AbutMesh);
 PETSC_INTERN PetscErrorCode AbutMeshTopologyBuild_Private(AbutMesh);

@@ -50,6 +50,8 @@ struct _p_AbutPair {
   AbutSegment    *segment;
   PetscReal       overlap[2]; /* the part of the pressure side that the other one faces: distances from its first node */
   PetscReal      *D, *F;      /* [n[which]] integrals of psi_i and of psi_i times the gap; D = 0: the node carries no pressure */
+  PetscReal      *length;     /* [n[which]] what D is along the side: D itself, but for bodies of revolution */
+  PetscBool       axial;      /* they are: integrals weigh the circumference */
   PetscReal      *work;       /* [n[which]] */
   const AbutSide *nodes[2];
 };
@@ -64,6 +66,7 @@ static inline PetscReal AbutSegmentNormal_Private(AbutPair pair, const AbutSegme
 PETSC_INTERN PetscErrorCode AbutPairCheckFacing_Private(AbutPair);
 PETSC_INTERN PetscErrorCode AbutPairGetDistance_Private(AbutPair, PetscReal *);
 PETSC_INTERN PetscErrorCode AbutPairObstacleFromOptions_Private(AbutPair);
+PETSC_INTERN PetscErrorCode AbutPairCloseGap_Private(AbutPair, const PetscReal[2], PetscReal *);
 PETSC_INTERN PetscErrorCode AbutPairObstacleGap_Private(AbutPair, const PetscReal[2], const PetscReal[2], PetscReal *);
 /* project.c */
 PETSC_INTERN PetscErrorCode AbutPairProject_Private(AbutPair);

@@ -52,8 +52,9 @@ typedef enum {
 
 struct _p_AbutScene {
   PETSCHEADER(int);
-  PetscInt      nbodies, npairs, nprobes;
+  PetscInt      nbodies, npairs, nprobes, neffects;
   AbutBody      body[ABUT_MAX_NAMES];
+  AbutEffect    effect[ABUT_MAX_NAMES];
   AbutPair      pair[ABUT_MAX_NAMES];
   AbutProbe     probe[ABUT_MAX_NAMES];
   PetscBool     estimates[ABUT_MAX_NAMES]; /* bodies whose error is estimated, and adapted if there is an adaptor */
@@ -88,6 +89,11 @@ struct _p_AbutScene {
   PetscInt    every;      /* cycles */
   AbutArchive restart;    /* from which the run goes on, NULL: it begins */
 
+  PetscInt         nsteps, step, first; /* load steps, 0: none is named; the present one from 0, and its first cycle */
+  PetscReal       *factor;              /* [nsteps] of all that is prescribed */
+  PetscBool        anew;                /* the step begins without what the last one left */
+  AbutAdaptVerdict limit;               /* the first one that a step has reached */
+
   PetscInt         nedges; /* of the last meshes that changed */
   AbutContactEdge *edge;
   PetscBool        settled;              /* the meshes have the cells of the last ones, and moved */
@@ -107,9 +113,18 @@ PETSC_INTERN PetscErrorCode AbutSceneWarnOfOverlap_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutScenePrintHeader_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutScenePrintCycle_Private(AbutScene, PetscInt);
 PETSC_INTERN PetscErrorCode AbutScenePrintEnd_Private(AbutScene);
+/* steps.c */
+PETSC_INTERN PetscErrorCode AbutSceneStepsFromOptions_Private(AbutScene, AbutOptionItems);
+PETSC_INTERN PetscErrorCode AbutSceneSetLoadFactor_Private(AbutScene);
+PETSC_INTERN PetscErrorCode AbutSceneRecordStep_Private(AbutScene);
+PETSC_INTERN PetscErrorCode AbutScenePrintStep_Private(AbutScene);
+PETSC_INTERN PetscErrorCode AbutSceneEndStep_Private(AbutScene, AbutAdaptVerdict, PetscBool *, PetscBool *);
+PETSC_INTERN PetscErrorCode AbutSceneNextStep_Private(AbutScene);
+PETSC_INTERN PetscErrorCode AbutSceneArchiveStep_Private(AbutScene, AbutArchive);
+PETSC_INTERN PetscErrorCode AbutSceneLeaveTrace_Private(AbutScene, PetscBool);
 /* edges.c */
 PETSC_INTERN PetscErrorCode AbutSceneKeepEdges_Private(AbutScene);
-PETSC_INTERN PetscBool      AbutSideTouches_Private(const AbutMeshTopology *, PetscInt, const PetscReal[2]);
+PETSC_INTERN PetscErrorCode AbutSideTouches_Private(AbutMesh, PetscInt, const PetscReal[2], PetscBool *);
 PETSC_INTERN PetscErrorCode AbutSceneSettles_Private(AbutScene, PetscBool *);
 PETSC_INTERN PetscErrorCode AbutSceneAdaptBody_Private(AbutScene, AbutBody, const PetscBool[]);
 PETSC_INTERN PetscErrorCode AbutSceneFollows_Private(AbutScene, PetscBool *);
