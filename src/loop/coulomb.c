@@ -60,8 +60,8 @@ static PetscErrorCode AbutFrictionSolveActive_Private(AbutContactModel model, Pe
 
 #define ABUT_SPRING 1e-6 /* of what a free motion meets when all nodes hold: far softer than contact */
 
-/* Free motions a that balance the loads; *loose is one that the active unknowns do not resist, -1 if there is none. stiffness may be
-   NULL. */
+/* Free motions a that balance the loads; *loose is one that the active unknowns do not resist, -1 if there is none. stiffness: what each
+   motion meets, or NULL. */
 static PetscErrorCode AbutFrictionBalance_Private(AbutContactModel model, PetscInt na, PetscReal a[], PetscInt *loose,
                                                   PetscReal stiffness[])
 {
@@ -211,8 +211,8 @@ static void AbutFrictionBegin_Private(AbutContactModel model, const PetscReal r[
   }
 }
 
-/* The zones of the answer. Where too few nodes hold a body all are closed and let stick, once; from then on a weak spring holds it too: a
-   body that slips on all its sides moves until one of them drags it along. Returns whether they have settled. */
+/* The zones of the answer, and whether they have settled. Where too few nodes hold a body all are closed and let stick, once; from then on
+   a weak spring holds it too: a body that slips on all its sides moves until one of them drags it along. */
 static PetscErrorCode AbutFrictionSettle_Private(AbutContactModel model, PetscReal x[], PetscReal g[], PetscReal a[], PetscInt *loose,
                                                  PetscBool *settled)
 {

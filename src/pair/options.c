@@ -52,13 +52,17 @@ static PetscErrorCode AbutPairFindBodies_Private(AbutPair pair, const char text[
 static PetscErrorCode AbutPairSetTheta_Private(AbutPair pair)
 {
   MPI_Comm    comm = PetscObjectComm((PetscObject)pair);
-  const char *name = ((PetscObject)pair)->name;
+  const char *name = ((PetscObject)pair)->name, *file;
   AbutMesh    mesh;
   PetscReal   young, poisson, normal[2];
 
   PetscFunctionBegin;
   PetscCall(AbutBodyGetMesh(pair->body[0], &mesh));
   PetscCall(AbutMeshGetSideDirection(mesh, pair->side[0], normal));
+  PetscCall(AbutMeshGetFile(mesh, &file));
+  AbutCheckInput(!file || pair->thetaset || pair->height > 0. || pair->penalty == 0., comm,
+                 "%s_pair_height: missing, and the first body is no box; give H of theta = c H/E, or %s_pair_theta, or %s_pair_penalty: 0",
+                 name, name, name);
   if (pair->height <= 0.) PetscCall(AbutBodyGetHeight(pair->body[0], normal, &pair->height));
   PetscCall(AbutBodyGetMaterial(pair->body[0], &young, &poisson));
   if (!pair->thetaset) pair->theta = pair->penalty * pair->height / young;
