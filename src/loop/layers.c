@@ -214,16 +214,19 @@ static PetscErrorCode AbutLayerShear_Private(AbutInterface f, AbutContactModel m
   AbutMesh          mesh;
   AbutModes         m = *side;
   PetscInt          sides[2], far;
-  PetscReal         ends[4], normal[2], young, poisson, height, *w;
+  PetscReal         normal[2], tangent[2], young, poisson, height, *w;
 
   PetscFunctionBegin;
   PetscCall(AbutPairGetBodies(f->pair[t / 2], bodies, sides));
   PetscCall(AbutBodyGetMesh(bodies[t % 2], &mesh));
-  PetscCall(AbutMeshGetSideEnds(mesh, sides[t % 2], ends, normal));
+  PetscCall(AbutMeshGetSideDirection(mesh, sides[t % 2], normal));
+  tangent[0] = -normal[1];
+  tangent[1] = normal[0];
   PetscCall(AbutBodyGetFarSide(bodies[t % 2], normal, &far, &condition));
-  PetscCall(AbutBodyGetCondition(bodies[t % 2], far, !(far / 2), &condition));
+  if (far >= 0) PetscCall(AbutBodyGetCondition(bodies[t % 2], far, !(far / 2), &condition));
+  else PetscCall(AbutBodyGetFarSide(bodies[t % 2], tangent, &far, &condition)); /* any side of a mesh from a file */
   PetscCall(AbutBodyGetHeight(bodies[t % 2], normal, &height));
-  PetscCall(AbutBodyGetMaterial(bodies[t % 2], &young, &poisson));
+  PetscCall(AbutBodyGetPlaneMaterial(bodies[t % 2], &young, &poisson));
   PetscCall(PetscMalloc1(m.n, &w));
   for (PetscInt k = 0; k < m.n; ++k) {
     const PetscReal compliance = 2. * (1. - poisson * poisson) / young, xi = PetscMax(m.xi[k], 0.5 * PETSC_PI / m.length);

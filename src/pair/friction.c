@@ -94,7 +94,7 @@ PetscErrorCode AbutPairGetShearCompliance(AbutPair pair, PetscReal compliance[2]
   for (PetscInt s = 0; s < 2 && pair->body[s]; ++s) {
     PetscReal young, poisson;
 
-    PetscCall(AbutBodyGetMaterial(pair->body[s], &young, &poisson));
+    PetscCall(AbutBodyGetPlaneMaterial(pair->body[s], &young, &poisson));
     compliance[s] *= 2. / (1. - poisson);
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -274,9 +274,9 @@ static PetscErrorCode AbutSceneCycle_Private(AbutScene scene, PetscBool *marks[]
    first step that does not converge or does not agree with itself ends the run; one that reaches a limit does not, but its verdict is
    that of the run, if no later step fails.
 
-   Limits: contact without friction keeps no memory, so that every step has the answer that its factor alone has, but for the meshes: those
-   only become finer, unless `-adaptor_coarsen` is given, and move to the edges of the contacts of a step (`-adaptor_follow`) where that
-   step refines, or with `-adaptor_settle`.
+   Limits: slips are counted from the end of the step before (`AbutInterfaceKeepSlip()`). Contact without friction keeps no memory, so that
+   every step has the answer that its factor alone has, but for the meshes: those only become finer, unless `-adaptor_coarsen` is given, and
+   move to the edges of the contacts of a step (`-adaptor_follow`) where that step refines, or with `-adaptor_settle`.
 
 .seealso: `AbutSceneSetFromOptions()`, `AbutSceneGetExitStatus()`
 @*/

@@ -78,7 +78,6 @@ PetscErrorCode AbutSceneEndStep_Private(AbutScene scene, AbutAdaptVerdict adapt,
   if (scene->status == 3 && scene->limit == ABUT_ADAPT_DONE) scene->limit = adapt;
   *next = (PetscBool)(scene->step + 1 < scene->nsteps);
   *ends = (PetscBool) !*next;
-  if (*next && scene->snes) PetscCall(AbutInterfaceKeepSlip(scene->iface));
   if (*next || scene->limit == ABUT_ADAPT_DONE) PetscFunctionReturn(PETSC_SUCCESS);
   scene->verdict = scene->limit == ABUT_ADAPT_LEVEL ? "limit_level" : "limit_unknowns";
   scene->status  = 3;
@@ -93,6 +92,7 @@ PetscErrorCode AbutSceneNextStep_Private(AbutScene scene)
   PetscFunctionBegin;
   scene->anew    = (PetscBool)(f[0] * f[1] <= 0.);
   scene->settled = PETSC_FALSE;
+  if (scene->snes) PetscCall(AbutInterfaceKeepSlip(scene->iface));
   PetscCall(AbutSceneLeaveTrace_Private(scene, (PetscBool)(!scene->cold && !scene->anew)));
   ++scene->step;
   scene->first = scene->cycle + 1;

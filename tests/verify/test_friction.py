@@ -5,13 +5,12 @@ is that of half-planes, R. D. Mindlin, Compliance of elastic bodies in contact, 
 with c/a = sqrt(1 - Q/(mu P)). Equal materials do not slip under the normal force, so that it and the tangential one may come in one step. It holds for
 the forces P and Q of the record; the boxes are seven times as deep as the contact is wide.
 """
-import csv, functools, math, os, tempfile
+import csv, functools, math, tempfile
 
-from abut import PROGRAM, case, execute, run
+from abut import case, read_csv, run
 
 E, NU, MU, DELTA = 2.1e5, 0.3, 0.4, 1e-3
 SHEAR = E / (2 * (1 + NU))
-EXACT = "-snes_rtol 1e-12 -mid_pair_penalty 0"
 
 
 def block(shift, *options, theta=0.0, order=1, shape="quad", ranks=1, cells=("4,4", "4,4"), **keys):
@@ -105,23 +104,37 @@ def read_profile(path):
     return [[float(row[key]) for row in rows] for key in ("x", "pressure", "traction_t", "slip")]
 
 
-@functools.lru_cache(None)
-def mindlin(shift, order=1, ranks=1, *options):
-    """Two boxes with the gap of cylinders; cells of a hundredth on the contact"""
-    mu, words = 0.3, "-scene_bodies upper,lower -scene_pairs mid -mid_pair_bodies upper,lower -mid_pair_sides bottom,top -mid_pair_gap x^2/57.6923077 -mid_pair_friction 0.3 " + EXACT
+def cylinders(shift, *options, order=1, ranks=1):
+    """Two boxes with the gap of cylinders, pressed together by 4e-3 that the gap lacks; cells of a hundredth on the contact"""
+    words = "-scene_bodies upper,lower -scene_pairs mid -mid_pair_bodies upper,lower -mid_pair_sides bottom,top -mid_pair_friction 0.3 -mid_pair_penalty 0"
+    words += " -mid_pair_gap x^2/57.6923077-4e-3 -snes_rtol 1e-12"
     for name, y in ("upper", 0), ("lower", -2):
-        size = f"max({0.01 * order},0.3*(sqrt(x^2+y^2)-0.31))"
-        words += f" -{name}_mesh_box -2,{y},2,{y + 2} -{name}_mesh_cells 8,4 -{name}_mesh_order {order} -{name}_mesh_size {size} -{name}_material_young {E} -{name}_material_poisson {NU}"
-    words += f" -lower_bc_bottom_u1 0 -lower_bc_bottom_u2 0 -upper_bc_top_u2 0-4e-3 -upper_bc_top_u1 {shift}"
+        size = f"max(0.01,0.3*(sqrt(x^2+y^2)-0.31))"
+        words += f" -{name}_mesh_box -2,{y},2,{y + 2} -{name}_mesh_cells 8,4 -{name}_mesh_order {order} -{name}_mesh_size {size}"
+        words += f" -{name}_material_young {E} -{name}_material_poisson {NU}"
+    words += f" -lower_bc_bottom_u1 0 -lower_bc_bottom_u2 0 -upper_bc_top_u2 0 -upper_bc_top_u1 {shift}"
+    return run(None, *words.split(), *options, ranks=ranks)
+
+
+def traction(record, path, mu, parts):
+    """The tangential tractions of a profile off mu p0 times the sum of factor (b/a) sqrt(1 - x^2/b^2), in L2; they resist the slip"""
+    x, p, t, slip = read_profile(path)
+    a = record["pair.mid.contact_edge"]
+    exact = [sum(factor * b / a * math.sqrt(max(0.0, 1 - (z / b) ** 2)) for factor, b in parts) for z in x]
+    exact = [mu * 2 * record["pair.mid.force"] / (math.pi * a) * v for v in exact]
+    assert all(abs(v) <= mu * q * (1 + 1e-9) for q, v in zip(p, t)), "more than mu p"
+    assert all(s * v >= 0 or abs(s) < 1e-6 * max(map(abs, slip)) for v, s in zip(t, slip)), "friction does not resist"
+    return math.sqrt(sum((v - w) ** 2 for v, w in zip(t, exact)) / sum(w**2 for w in exact))
+
+
+@functools.lru_cache(None)
+def mindlin(shift, order=1, ranks=1):
+    mu = 0.3
     with tempfile.TemporaryDirectory() as folder:
-        record = run(None, *words.split(), f"-output_profile {folder}/profile.csv", *options, ranks=ranks)
-        x, p, t, slip = read_profile(f"{folder}/profile.csv")
-    P, Q, a = record["pair.mid.force"], record["pair.mid.tangential"], record["pair.mid.contact_edge"]
-    c = a * math.sqrt(1 - Q / (mu * P))
-    root = lambda z: math.sqrt(max(0.0, 1 - z**2))
-    exact = [mu * 2 * P / (math.pi * a) * (root(z / a) - c / a * root(z / c)) for z in x]
-    error = math.sqrt(sum((v - w) ** 2 for v, w in zip(t, exact)) / sum(w**2 for w in exact))
-    assert all(abs(v) <= mu * q * (1 + 1e-9) and (s * v >= 0 or abs(s) < 1e-6 * max(slip)) for q, v, s in zip(p, t, slip)), "friction does not resist"
+        record = cylinders(shift, f"-output_profile {folder}/profile.csv", order=order, ranks=ranks)
+        a = record["pair.mid.contact_edge"]
+        c = a * math.sqrt(1 - record["pair.mid.tangential"] / (mu * record["pair.mid.force"]))
+        error = traction(record, f"{folder}/profile.csv", mu, ((1, a), (-1, c)))
     return record, c / a, record["pair.mid.stick_length"] / (2 * a), error
 
 
@@ -139,3 +152,43 @@ def test_partial_slip_is_the_same_on_all_ranks():
     one, *others = (mindlin(5e-4, 1, ranks)[0] for ranks in (1, 2, 3))
     keys = "force", "tangential", "pressure_max", "stick_length", "slip_max"
     case("V18", "forces, stick and slip on 2 and 3 ranks off those on 1", max(abs(r[f"pair.mid.{key}"] / one[f"pair.mid.{key}"] - 1) for r in others for key in keys), 1e-8)
+
+
+def test_a_force_that_comes_and_goes_leaves_what_mindlin_and_deresiewicz_say():
+    """After Q* the force Q slips backwards from the edge to b/a = sqrt(1 - (Q* - Q)/(2 mu P)), and inside b the traction is less by one constant slip:
+    J. Appl. Mech. 20 (1953). At -Q* nothing is left of the way."""
+    mu, factors = 0.3, (1, 0.6, 0.2, -0.3, -1)
+    with tempfile.TemporaryDirectory() as folder:
+        steps = f"-scene_load_steps {','.join(map(str, factors))}"
+        cylinders(1e-3, steps, f"-output_profile {folder}/profile.csv -record_csv {folder}/steps.csv -snes_rtol 1e-10")
+        rows = read_csv(f"{folder}/steps.csv")
+        assert [row["load_factor"] for row in rows] == list(factors)
+        for k, row in enumerate(rows):
+            a, P, Q = (row[f"pair.mid.{key}"] for key in ("contact_edge", "force", "tangential"))
+            c = a * math.sqrt(1 - rows[0]["pair.mid.tangential"] / (mu * P))
+            b = a * math.sqrt(1 - (rows[0]["pair.mid.tangential"] - Q) / (2 * mu * P))
+            parts = ((1, a), (-1, c)) if k == 0 else ((-1, a), (2, b), (-1, c))
+            error, stick = traction(row, f"{folder}/profile_step_{k + 1:04d}.csv", mu, parts), row["pair.mid.stick_length"] / (2 * a)
+            print(f"factor {row['load_factor']}: Q/(mu P) {Q / (mu * P):.3f}, stick {stick:.4f}, exact {(b if k else c) / a:.4f}, traction off by {error:.4f}")
+            case("V18", f"stick over contact off the exact one at factor {row['load_factor']}", abs(stick * a / (b if k else c) - 1), 0.02)
+            case("V18", f"tangential traction off the exact one in L2 at factor {row['load_factor']}", error, 0.06)
+    case("V18", "force at factor -1 off minus that at 1", abs(rows[-1]["pair.mid.tangential"] / rows[0]["pair.mid.tangential"] + 1), 1e-6)
+
+
+def test_load_steps_with_friction_go_on_from_a_checkpoint():
+    words = "-upper_mesh_size 9 -lower_mesh_size 9 -upper_mesh_cells 16,8 -lower_mesh_cells 24,8"
+    with tempfile.TemporaryDirectory() as folder:
+        whole = cylinders(2e-3, words, "-scene_load_steps 1,0.6,-0.2")
+        cylinders(2e-3, words, f"-scene_load_steps 1,0.6 -checkpoint {folder}/checkpoint")
+        assert whole["pair.mid.slip_max"] > 1e-5, whole
+        for ranks in 1, 2:
+            again = cylinders(2e-3, words, f"-scene_load_steps 1,0.6,-0.2 -restart {folder}/checkpoint", ranks=ranks)
+            worst = max(abs(again[key] / whole[key] - 1) for key in ("pair.mid.force", "pair.mid.tangential", "pair.mid.slip_max"))
+            case("H23", f"friction after a restart on {ranks} ranks off the run without", worst, 1e-8)
+
+
+def test_estimators_know_the_tangential_tractions():
+    """Where the stress is uniform there is no error; without the tractions the estimate would be as large as the shear stress"""
+    for estimator, most in ("zz", 1e-10), ("residual", 1e-10), ("fembem", 1e-4):
+        worst = max(block(shift, f"-estimator_type {estimator}", order=order, cells=("3,2", "4,4"))[0]["error.discretisation"] for shift in (2e-4, 5e-3) for order in (1, 2))
+        case("V17", f"error that {estimator} finds in uniform stress with friction", worst, most)
