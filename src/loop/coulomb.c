@@ -152,13 +152,14 @@ static PetscInt AbutFrictionAsked_Private(const AbutContactModel model, PetscInt
   return x[c] > 0. ? ABUT_SLIPS : ABUT_SLIPS_BACK;
 }
 
-/* Changes zones where they are contradicted, all at once, and one at a time when that has not made the contradictions fewer for a while.
-   Returns how many there were. */
+/* Changes zones where they are contradicted, all at once, and every other one by chance when that has not made the contradictions fewer for
+   a while: matrices with friction are not those for which single changes must end. Returns how many there were. */
 static PetscInt AbutFrictionExchange_Private(AbutContactModel model, const PetscReal x[], const PetscReal g[], PetscInt *least,
                                              PetscInt *patience)
 {
   PetscReal largest[2] = {0., 0.};
   PetscInt  wrong      = 0;
+  unsigned  chance     = (unsigned)(ABUT_PATIENCE - *patience); /* the same in every run, on every rank */
 
   for (PetscInt i = 0; i < model->n; ++i) {
     largest[0] = PetscMax(largest[0], ABUT_ROUNDOFF * PetscAbsReal(x[i]));
@@ -170,9 +171,11 @@ static PetscInt AbutFrictionExchange_Private(AbutContactModel model, const Petsc
     *least    = wrong;
     *patience = ABUT_PATIENCE;
   } else --*patience;
-  for (PetscInt j = wrong - 1; j >= (*patience > 0 ? 0 : PetscMax(0, wrong - 1));
-       --j) /* backwards: tangential forces before their bounds */
-    model->friction->zone[model->active[j]] = AbutFrictionAsked_Private(model, model->active[j], x, g, largest);
+  for (PetscInt j = wrong - 1; j >= 0; --j) { /* backwards: tangential forces before their bounds */
+    chance = (1103515245u * chance + 12345u) & 0x7fffffffu;
+    if (*patience > 0 || wrong == 1 || chance & 0x40000000u)
+      model->friction->zone[model->active[j]] = AbutFrictionAsked_Private(model, model->active[j], x, g, largest);
+  }
   return wrong;
 }
 

@@ -1,4 +1,5 @@
 #include <abut/private/loopimpl.h> /*I "abutloop.h" I*/
+#include <petscblaslapack.h>
 
 /* What ddactive does otherwise where a pair has friction: unknowns, steps, what it learns. coulomb.c solves the contact problem. */
 
@@ -40,8 +41,8 @@ PetscErrorCode AbutModelFrictionDestroy_Private(AbutModelFriction *friction)
   PetscFunctionBegin;
   if (!*friction) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree4((*friction)->normal, (*friction)->tangent, (*friction)->mu, (*friction)->zone));
-  for (PetscInt k = 0; k < (*friction)->nlearned; ++k) PetscCall(PetscFree((*friction)->learned[k]));
-  PetscCall(PetscFree((*friction)->learned));
+  for (PetscInt i = 0; i < 2; ++i) PetscCall(PetscFree((*friction)->learned[i]));
+  PetscCall(PetscFree((*friction)->S0));
   PetscCall(PetscFree((*friction)->spring));
   PetscCall(PetscFree(*friction));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -88,40 +89,72 @@ void AbutContactModelFrictionAdd_Private(const AbutContactModel model, PetscReal
 
 #define ABUT_NOTHING 1e-10 /* of the energy of a direction */
 
+/* S = S0 - B (V'B)^{-1} B' + W W', B = S0 V, of directions V that took W, V'W = 1: the BFGS formula for all of them at once. One after the
+   other in place, what an update does to the round-off of earlier ones grows from sweep to sweep. */
+static PetscErrorCode AbutModelFrictionRebuild_Private(AbutContactModel model)
+{
+  const AbutModelFriction friction = model->friction;
+  const PetscInt          n = model->n, k = friction->nlearned;
+  const PetscReal        *V = friction->learned[0], *W = friction->learned[1];
+  PetscReal              *B, *C, one = 1., zero = 0., minus = -1.;
+  PetscBLASInt            bn, bk, info;
+
+  PetscFunctionBegin;
+  PetscCall(PetscBLASIntCast(n, &bn));
+  PetscCall(PetscBLASIntCast(k, &bk));
+  PetscCall(PetscMalloc2(n * k, &B, k * k, &C));
+  PetscCallBLAS("BLASgemm", BLASgemm_("N", "N", &bn, &bk, &bn, &one, friction->S0, &bn, V, &bn, &zero, B, &bn));
+  PetscCallBLAS("BLASgemm", BLASgemm_("T", "N", &bk, &bk, &bn, &one, V, &bn, B, &bn, &zero, C, &bk));
+  PetscCallBLAS("LAPACKpotrf", LAPACKpotrf_("L", &bk, C, &bk, &info));
+  if (!info) {
+    PetscCallBLAS("BLAStrsm", BLAStrsm_("R", "L", "T", "N", &bn, &bk, &one, C, &bk, B, &bn));
+    PetscCall(PetscArraycpy(model->S, friction->S0, n * n));
+    PetscCallBLAS("BLASgemm", BLASgemm_("N", "T", &bn, &bn, &bk, &minus, B, &bn, B, &bn, &one, model->S, &bn));
+    PetscCallBLAS("BLASgemm", BLASgemm_("N", "T", &bn, &bn, &bk, &one, W, &bn, W, &bn, &one, model->S, &bn));
+  } else --friction->nlearned; /* the last direction is round-off */
+  PetscCall(PetscFree2(B, C));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* A sweep has shown that forces d give way by q. Steps are not those of least energy here, so what d has of earlier directions is taken out
    first, in the sense of the compliance: the model then agrees with all sweeps, not only with the last one. */
 PetscErrorCode AbutContactModelLearnFriction_Private(AbutContactModel model, const PetscReal d[], const PetscReal q[])
 {
   AbutModelFriction friction = model->friction;
-  const PetscInt    n        = model->n;
+  const PetscInt    n = model->n, k = friction->nlearned;
   PetscReal        *v, *w, dq = 0., vw = 0.;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(2 * n, &v));
-  w = v + n;
+  if (!friction->S0) {
+    PetscCall(PetscMalloc1(n * n, &friction->S0));
+    PetscCall(PetscArraycpy(friction->S0, model->S, n * n));
+  }
+  for (PetscInt i = 0; i < 2; ++i) PetscCall(PetscRealloc((k + 1) * n * sizeof(PetscReal), &friction->learned[i]));
+  v = friction->learned[0] + k * n;
+  w = friction->learned[1] + k * n;
   PetscCall(PetscArraycpy(v, d, n));
   PetscCall(PetscArraycpy(w, q, n));
-  for (PetscInt k = 0; k < friction->nlearned; ++k) {
-    const PetscReal *old  = friction->learned[k];
-    PetscReal        part = 0., whole = 0.;
+  for (PetscInt i = 0; i < 2 * k; ++i) { /* twice: what one pass leaves is round-off of d, not of the remainder */
+    const PetscReal *oldv = friction->learned[0] + (i % k) * n, *oldw = friction->learned[1] + (i % k) * n;
+    PetscReal        part = 0.;
 
+    for (PetscInt c = 0; c < n; ++c) part += oldv[c] * w[c];
     for (PetscInt c = 0; c < n; ++c) {
-      part += old[c] * w[c];
-      whole += old[c] * old[n + c];
+      v[c] -= part * oldv[c];
+      w[c] -= part * oldw[c];
     }
-    for (PetscInt c = 0; c < 2 * n; ++c) v[c] -= part / whole * old[c];
   }
   for (PetscInt c = 0; c < n; ++c) {
     dq += d[c] * q[c];
     vw += v[c] * w[c];
   }
-  if (vw <= ABUT_NOTHING * dq) { /* nothing new */
-    PetscCall(PetscFree(v));
-    PetscFunctionReturn(PETSC_SUCCESS);
+  if (vw <= ABUT_NOTHING * dq) PetscFunctionReturn(PETSC_SUCCESS); /* nothing new */
+  for (PetscInt c = 0; c < n; ++c) {
+    v[c] /= PetscSqrtReal(vw);
+    w[c] /= PetscSqrtReal(vw);
   }
-  PetscCall(AbutContactModelLearn_Private(model, v, w));
-  PetscCall(PetscRealloc((friction->nlearned + 1) * sizeof(*friction->learned), &friction->learned));
-  friction->learned[friction->nlearned++] = v;
+  ++friction->nlearned;
+  PetscCall(AbutModelFrictionRebuild_Private(model));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

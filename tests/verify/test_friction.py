@@ -176,7 +176,7 @@ def test_a_force_that_comes_and_goes_leaves_what_mindlin_and_deresiewicz_say():
 
 
 def test_load_steps_with_friction_go_on_from_a_checkpoint():
-    words = "-upper_mesh_size 9 -lower_mesh_size 9 -upper_mesh_cells 16,8 -lower_mesh_cells 24,8"
+    words = "-upper_mesh_size 9 -lower_mesh_size 9 -upper_mesh_cells 80,6 -lower_mesh_cells 96,6"
     with tempfile.TemporaryDirectory() as folder:
         whole = cylinders(2e-3, words, "-scene_load_steps 1,0.6,-0.2")
         cylinders(2e-3, words, f"-scene_load_steps 1,0.6 -checkpoint {folder}/checkpoint")

@@ -19,12 +19,12 @@ typedef enum {
 
 /* Of contact models with friction: unknowns are then contact forces and tangential forces */
 typedef struct {
-  PetscInt   *normal, *tangent; /* [n] the contact force that bounds a tangential one, and back; -1 if it is none, or there is none */
-  PetscReal  *mu;               /* [n] of its pair */
-  PetscInt   *zone;             /* [n] work */
-  PetscReal  *spring;           /* [m] what resists free motions beside contact while zones are sought; force over motion */
-  PetscInt    nlearned;
-  PetscReal **learned; /* [nlearned][2*n] forces and what they took, of all sweeps, conjugate */
+  PetscInt  *normal, *tangent; /* [n] the contact force that bounds a tangential one, and back; -1 if it is none, or there is none */
+  PetscReal *mu;               /* [n] of its pair */
+  PetscInt  *zone;             /* [n] work */
+  PetscReal *spring;           /* [m] what resists free motions beside contact while zones are sought; force over motion */
+  PetscInt   nlearned;
+  PetscReal *learned[2], *S0; /* [nlearned*n] forces of all sweeps, conjugate, and what they took; [n*n] the model before it learned */
 } *AbutModelFriction;
 
 /* What the loop knows of the bodies without solving them: nodal contact forces F -> penetrations of the contact nodes of all pairs.
