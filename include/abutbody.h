@@ -4,13 +4,16 @@
 #include <abutmesh.h>
 
 /*S
-   AbutBody - One elastic body in plane strain: mesh, material, boundary conditions, operator, solver, displacement and stresses
+   AbutBody - One elastic body: mesh, material, boundary conditions, operator, solver, displacement and stresses
 
    Level: beginner
 
    Notes:
    Linear isotropic elasticity, eqs. (1)-(6) of the paper, on cells of order 1 to 4. Its options carry its name: `-lower_mesh_box`,
    `-lower_ksp_type`.
+
+   In plane strain, or as `AbutBodySetKinematics()` says. A body with axial symmetry is a whole turn of its mesh about the axis x = 0: what
+   is "stress times length" or "stress times area" below is then a force or an energy, over the whole circumference.
 
 .seealso: `AbutBodyCreate()`, `AbutBodySolve()`, `AbutMesh`, `AbutPair`, `AbutEstimator`
 S*/
@@ -23,15 +26,58 @@ typedef enum {
   ABUT_CONTACT
 } AbutConditionType;
 
+/* What the two coordinates are: a slice of a long body, a thin sheet, or half a section through the axis of a body of revolution */
+typedef enum {
+  ABUT_PLANE_STRAIN,
+  ABUT_PLANE_STRESS,
+  ABUT_AXISYMMETRIC
+} AbutKinematics;
+PETSC_EXTERN const char *const AbutKinematicsNames[];
+
 PETSC_EXTERN PetscClassId   ABUTBODY_CLASSID;
 PETSC_EXTERN PetscErrorCode AbutBodyCreate(MPI_Comm, const char[], AbutBody *);
 PETSC_EXTERN PetscErrorCode AbutBodySetMaterial(AbutBody, PetscReal, PetscReal);
 PETSC_EXTERN PetscErrorCode AbutBodyGetMaterial(AbutBody, PetscReal *, PetscReal *);
+PETSC_EXTERN PetscErrorCode AbutBodyGetPlaneMaterial(AbutBody, PetscReal *, PetscReal *);
+PETSC_EXTERN PetscErrorCode AbutBodySetKinematics(AbutBody, AbutKinematics);
+PETSC_EXTERN PetscErrorCode AbutBodyGetKinematics(AbutBody, AbutKinematics *);
+PETSC_EXTERN PetscErrorCode AbutBodyGetThickness(AbutBody, const PetscReal[2], PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutBodySetDisplacement(AbutBody, const char[], PetscInt, AbutPointFunction, void *);
 PETSC_EXTERN PetscErrorCode AbutBodySetTraction(AbutBody, const char[], PetscInt, AbutPointFunction, void *);
 PETSC_EXTERN PetscErrorCode AbutBodySetContact(AbutBody, PetscInt);
 PETSC_EXTERN PetscErrorCode AbutBodyGetCondition(AbutBody, PetscInt, PetscInt, AbutConditionType *);
 PETSC_EXTERN PetscErrorCode AbutBodySetFromOptions(AbutBody);
+
+/* What acts on a body beside its conditions. Each thing has the name of who brought it, for messages, and an event that is logged when it
+   acts. It is added before the body is set up, and asked for on each mesh. */
+typedef PetscErrorCode (*AbutForceFunction)(const PetscReal x[2], PetscReal force[2], void *ctx);
+typedef PetscErrorCode (*AbutTractionFunction)(const PetscReal x[2], const PetscReal normal[2], PetscReal traction[2], void *ctx);
+typedef PetscErrorCode (*AbutLoadFunction)(AbutBody, Vec load, void *ctx);
+typedef PetscErrorCode (*AbutStrainFunction)(const PetscReal x[2], PetscReal strain[4], void *ctx); /* e11, e22, e12, e33 */
+PETSC_EXTERN PetscErrorCode AbutBodyAddForce(AbutBody, const char[], PetscLogEvent, PetscBool, AbutForceFunction, void *);
+PETSC_EXTERN PetscErrorCode AbutBodyAddTraction(AbutBody, const char[], PetscLogEvent, PetscInt, AbutTractionFunction, void *);
+PETSC_EXTERN PetscErrorCode AbutBodyAddLoad(AbutBody, const char[], PetscLogEvent, AbutLoadFunction, void *);
+PETSC_EXTERN PetscErrorCode AbutBodyAddFoundation(AbutBody, const char[], PetscLogEvent, PetscInt, PetscReal, PetscReal);
+PETSC_EXTERN PetscErrorCode AbutBodyAddSideOffset(AbutBody, const char[], PetscLogEvent, PetscInt, AbutPointFunction, void *);
+PETSC_EXTERN PetscErrorCode AbutBodyAddInitialStrain(AbutBody, const char[], PetscLogEvent, PetscBool, AbutStrainFunction, void *);
+PETSC_EXTERN PetscErrorCode AbutBodyGetInitialStrain(AbutBody, const PetscReal[2], PetscReal[4]);
+PETSC_EXTERN PetscErrorCode AbutBodyGetForce(AbutBody, const PetscReal[2], PetscReal[2]);
+PETSC_EXTERN PetscErrorCode AbutBodyGetFoundation(AbutBody, PetscInt, PetscReal *, PetscReal *);
+PETSC_EXTERN PetscErrorCode AbutBodyGetSideOffset(AbutBody, PetscInt, const PetscReal[2], PetscReal *);
+PETSC_EXTERN PetscErrorCode AbutBodyHasSideOffset(AbutBody, PetscInt, PetscBool *);
+
+/* What an estimator may have to know of a body; it says which of them it can do, see AbutEstimatorSetFeatures() */
+#define ABUT_FEATURE_BODY_FORCE_CONSTANT   0x01
+#define ABUT_FEATURE_BODY_FORCE_VARYING    0x02
+#define ABUT_FEATURE_FOUNDATION            0x04 /* its tractions are in those of AbutBodyGetBoundary() */
+#define ABUT_FEATURE_INITIAL_STRAIN        0x08 /* one that is not linear */
+#define ABUT_FEATURE_AXISYMMETRIC          0x10
+#define ABUT_FEATURE_PLANE_STRESS          0x20
+#define ABUT_FEATURE_LOAD                  0x40 /* nodal forces of which nothing more is known */
+#define ABUT_FEATURE_INITIAL_STRAIN_LINEAR 0x80 /* linear in x and y: compatible, see AbutEstimatorGetParticular() */
+PETSC_EXTERN PetscErrorCode AbutBodyAddFeature(AbutBody, const char[], PetscInt);
+PETSC_EXTERN PetscErrorCode AbutBodyGetFeatures(AbutBody, PetscInt *);
+PETSC_EXTERN PetscErrorCode AbutBodyFindFeature(AbutBody, PetscInt, const char *[], const char *[]);
 PETSC_EXTERN PetscErrorCode AbutBodyCheck(AbutBody);
 PETSC_EXTERN PetscErrorCode AbutBodySetUp(AbutBody);
 PETSC_EXTERN PetscErrorCode AbutBodyView(AbutBody, PetscViewer);
@@ -76,9 +122,12 @@ PETSC_EXTERN PetscErrorCode AbutBodyGetLinearCost(AbutBody, PetscReal, PetscReal
 /* Stress (s11, s22, s12) of the last solve in local cell c at a reference point: [-1,1]^2 for quads, (0,0)(1,0)(0,1) for triangles */
 PETSC_EXTERN PetscErrorCode AbutBodyGetCellStress(AbutBody, PetscInt, const PetscReal[2], PetscReal[3]);
 PETSC_EXTERN PetscErrorCode AbutBodyGetCellStresses(AbutBody, PetscInt, PetscInt, const PetscReal[], const PetscReal[], PetscReal[]);
+PETSC_EXTERN PetscErrorCode AbutBodyGetCellStresses3D(AbutBody, PetscInt, PetscInt, const PetscReal[], const PetscReal[], PetscReal[],
+                                                      PetscReal[]);
+PETSC_EXTERN PetscErrorCode AbutBodyGetCellMeasure(AbutBody, PetscInt, PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutBodyGetCellPoint(AbutBody, PetscInt, const PetscReal[2], PetscReal[2], PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutBodyGetPointValues(AbutBody, const PetscReal[2], PetscReal[7]);
-PETSC_EXTERN PetscErrorCode AbutVonMises(const PetscReal[3], PetscReal, PetscReal *);
+PETSC_EXTERN PetscErrorCode AbutVonMises(const PetscReal[4], PetscReal *);
 
 /* One side of a body as an ordered list of nodes, the same on all ranks. Nodes follow the boundary with the body on the left; a node of
    a side always carries unknowns (hanging ones never lie on the boundary). */
@@ -112,7 +161,9 @@ typedef struct {
   PetscReal         *u;         /* [2*nnodes] displacements there */
   PetscInt          *side;      /* [n] side number of the element */
   AbutConditionType *condition; /* [2*n] what is known on the element, per component */
-  PetscReal *traction; /* [2*(order+1)*n] given traction, L2 projection: (t1,t2) at the nodes of each element; 0 where none is given */
+  PetscReal
+    *traction; /* [2*(order+1)*n] given traction, L2 projection, and that of springs under the displacement: (t1,t2) at the nodes of each
+                          element; 0 where none is given */
   PetscReal *reaction; /* [2*nnodes] nodal forces by which prescribed displacements hold the body, K u - f, 0 elsewhere */
   PetscReal *contact;  /* [2*nnodes] nodal contact forces on the body */
 } AbutBoundary;

@@ -27,6 +27,7 @@ typedef struct {
 PETSC_EXTERN PetscClassId   ABUTESTIMATOR_CLASSID;
 PETSC_EXTERN PetscErrorCode AbutEstimatorRegister(const char[], PetscErrorCode (*)(AbutEstimator));
 PETSC_EXTERN PetscErrorCode AbutEstimatorSetOps(AbutEstimator, const AbutEstimatorOps *);
+PETSC_EXTERN PetscErrorCode AbutEstimatorSetFeatures(AbutEstimator, PetscInt);
 PETSC_EXTERN PetscErrorCode AbutEstimatorSetAbout(AbutEstimator, const char[]);
 PETSC_EXTERN PetscErrorCode AbutEstimatorSetData(AbutEstimator, void *);
 PETSC_EXTERN PetscErrorCode AbutEstimatorGetData(AbutEstimator, void *);
@@ -36,6 +37,7 @@ PETSC_EXTERN PetscErrorCode AbutEstimatorCreate(MPI_Comm, AbutEstimator *);
 PETSC_EXTERN PetscErrorCode AbutEstimatorSetType(AbutEstimator, AbutEstimatorType);
 PETSC_EXTERN PetscErrorCode AbutEstimatorGetType(AbutEstimator, AbutEstimatorType *);
 PETSC_EXTERN PetscErrorCode AbutEstimatorSetFromOptions(AbutEstimator);
+PETSC_EXTERN PetscErrorCode AbutEstimatorCheck(AbutEstimator, AbutBody);
 PETSC_EXTERN PetscErrorCode AbutEstimatorEstimate(AbutEstimator, AbutBody, Vec);
 PETSC_EXTERN PetscErrorCode AbutEstimatorGetNorms(AbutBody, Vec, PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutEstimatorView(AbutEstimator, PetscViewer);
@@ -50,6 +52,9 @@ PETSC_EXTERN PetscErrorCode AbutEstimatorCompareStress(AbutEstimator, AbutBody, 
 
 /* For what estimates the error of the stress without a better one: from ||s - s_F||_e^2 of each local cell to eta_e, eq. (27) */
 PETSC_EXTERN PetscErrorCode AbutEstimatorScale(AbutBody, PetscReal, PetscReal[]);
+
+/* For what knows no body force: a stress that balances a constant one, to be taken off and added again, and its displacement */
+PETSC_EXTERN PetscErrorCode AbutEstimatorGetParticular(AbutBody, const PetscReal[2], PetscReal[], PetscReal[3]);
 
 /* For what gathers from cells to vertices: sums over the ranks at the vertices with unknowns, v[bs*nunknown] as in AbutMeshTopology */
 PETSC_EXTERN PetscErrorCode AbutEstimatorSumAtVertices(AbutBody, PetscInt, PetscReal[]);

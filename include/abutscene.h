@@ -1,6 +1,7 @@
 #pragma once
 
 #include <abutadaptor.h>
+#include <abuteffect.h>
 #include <abutrecorder.h>
 
 /*S

@@ -6,7 +6,7 @@
    mesh, eqs. (25) and (26). The boundary elements see the same data as the last solve of the body, eq. (20): given tractions as the load
    projected on the boundary elements, contact as nodal forces, supports as displacements. Boundary elements have the order of the finite
    elements: of order 1 they would be worse than finite elements of order 2.
-   Limits: one homogeneous material, Poisson's ratio below 1/2, no body forces.
+   Limits: one homogeneous material, Poisson's ratio below 1/2, no body force that varies.
 */
 typedef enum {
   FEMBEM_AUTO,
@@ -26,7 +26,7 @@ typedef struct {
   FembemStress stress; /* during an estimate */
 } Fembem;
 
-static PetscErrorCode FembemCompare(AbutEstimator est, PETSC_UNUSED AbutBody body, PETSC_UNUSED PetscInt c, PetscInt n,
+static PetscErrorCode FembemCompare(AbutEstimator est, AbutBody body, PETSC_UNUSED PetscInt c, PetscInt n,
                                     PETSC_UNUSED const PetscReal xi[], const PetscReal x[], PetscReal s[])
 {
   Fembem *fembem;
@@ -34,6 +34,7 @@ static PetscErrorCode FembemCompare(AbutEstimator est, PETSC_UNUSED AbutBody bod
   PetscFunctionBegin;
   PetscCall(AbutEstimatorGetData(est, &fembem));
   PetscCall(FembemStressEvaluate(fembem->stress, n, x, s));
+  PetscCall(FembemAddForce(body, n, x, s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -61,8 +62,9 @@ static PetscErrorCode AbutEstimatorEstimate_Fembem(AbutEstimator est, AbutBody b
 
   PetscFunctionBegin;
   PetscCall(AbutEstimatorGetData(est, &fembem));
-  PetscCall(AbutBodyGetMaterial(body, &young, &poisson));
+  PetscCall(AbutBodyGetPlaneMaterial(body, &young, &poisson));
   PetscCall(AbutBodyGetBoundary(body, &given));
+  PetscCall(FembemTakeOffForce(body, given));
   PetscCall(FembemBoundaryCreate(comm, given, young, poisson, &boundary));
   FembemTakeOffRigidMotion(&boundary);
   PetscCall(FembemRecoverTractions(&boundary));
@@ -147,6 +149,8 @@ static PetscErrorCode AbutEstimatorCreate_Fembem(AbutEstimator est)
   fembem->max_elements = 4000;
   PetscCall(AbutEstimatorSetData(est, fembem));
   PetscCall(AbutEstimatorSetOps(est, &ops));
+  PetscCall(AbutEstimatorSetFeatures(est, ABUT_FEATURE_BODY_FORCE_CONSTANT | ABUT_FEATURE_FOUNDATION | ABUT_FEATURE_PLANE_STRESS |
+                                            ABUT_FEATURE_INITIAL_STRAIN_LINEAR));
   PetscCall(AbutEstimatorSetAbout(est, "stress of boundary elements on the trace of the mesh, eq. (27) of the paper"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

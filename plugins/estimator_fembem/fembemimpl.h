@@ -38,6 +38,10 @@ PETSC_INTERN PetscErrorCode FembemBoundaryCreate(MPI_Comm, const AbutBoundary *,
 PETSC_INTERN void           FembemTakeOffRigidMotion(FembemBoundary *);
 PETSC_INTERN PetscErrorCode FembemBoundaryDestroy(FembemBoundary *);
 
+/* What balances a constant body force: off the boundary, and added to stresses s[3*n] at points x[2*n] */
+PETSC_INTERN PetscErrorCode FembemTakeOffForce(AbutBody, AbutBoundary *);
+PETSC_INTERN PetscErrorCode FembemAddForce(AbutBody, PetscInt, const PetscReal[], PetscReal[]);
+
 /* Tractions that hold nodal forces in balance, where a displacement or a contact is prescribed */
 PETSC_INTERN PetscErrorCode FembemRecoverTractions(FembemBoundary *);
 

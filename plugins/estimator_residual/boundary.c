@@ -45,29 +45,68 @@ static PetscBool IsContact(const AbutBoundary *b, PetscInt e)
   return (PetscBool)(b->condition[2 * e] == ABUT_CONTACT || b->condition[2 * e + 1] == ABUT_CONTACT);
 }
 
+/* The mean of the body's thickness with the function of node k of element e: that at the node, or beside it if the order is 1 */
+static PetscErrorCode GetNodeThickness(AbutBody body, const AbutBoundary *b, PetscInt e, PetscInt k, PetscReal *thickness)
+{
+  PetscReal other;
+
+  PetscFunctionBegin;
+  PetscCall(AbutBodyGetThickness(body, b->x + 2 * AbutBoundaryNode(b, e, k), thickness));
+  if (b->order > 1) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AbutBodyGetThickness(body, b->x + 2 * AbutBoundaryNode(b, e, !k), &other));
+  *thickness = (2. * *thickness + other) / 3.;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* At an end on an axis of symmetry the node's function has no integral from order 2 on: the polynomial through the other nodes */
+static void ExtrapolateTraction(PetscInt order, PetscInt end, const PetscReal x[], PetscReal traction[])
+{
+  traction[2 * end] = traction[2 * end + 1] = 0.;
+  for (PetscInt j = 0; j <= order; ++j) {
+    PetscReal l = j == end ? 0. : 1.;
+
+    for (PetscInt i = 0; i <= order; ++i)
+      if (i != j && i != end) l *= (x[end] - x[i]) / (x[j] - x[i]);
+    for (PetscInt d = 0; j != end && d < 2; ++d) traction[2 * end + d] += l * traction[2 * j + d];
+  }
+}
+
 /* The contact pressure -p n at the nodes of element e from the nodal contact forces f: lumped, p = -f.n / D with D the integral of the
    node's function. At a node between two elements in contact one force is that of both: D is the sum, as far as they have one normal;
    across a corner of 90 degrees pressures do not mix. */
-static void SetContactTraction(const AbutBoundary *b, PetscInt e, PetscInt previous, const PetscReal w[], PetscReal traction[])
+static PetscErrorCode SetContactTraction(AbutBody body, const AbutBoundary *b, PetscInt e, PetscInt previous, const PetscReal x[],
+                                         const PetscReal w[], PetscReal traction[])
 {
-  PetscReal n[2], m[2], length = GetNormal(b, e, n);
+  PetscReal n[2], m[2], length = GetNormal(b, e, n), thickness, across;
+  PetscInt  axis = -1;
 
+  PetscFunctionBegin;
   for (PetscInt k = 0; k <= b->order; ++k) {
     const PetscInt   other = k == 0 ? previous : k == b->order ? b->next[e] : e;
     const PetscReal *f     = b->contact + 2 * AbutBoundaryNode(b, e, k);
-    PetscReal        D     = 0.5 * w[k] * length;
+    PetscReal        D;
 
+    PetscCall(GetNodeThickness(body, b, e, k, &thickness));
+    PetscCall(GetNodeThickness(body, b, e, b->order - k, &across));
+    D = 0.5 * w[k] * length * thickness;
+    if (thickness <= 1e-10 * across) {
+      axis = k;
+      continue;
+    }
     if (other != e && IsContact(b, other)) {
       (void)GetNormal(b, other, m);
-      D += 0.5 * w[k] * PetscMax(0., (n[0] * m[0] + n[1] * m[1]) / length);
+      PetscCall(GetNodeThickness(body, b, other, k ? 0 : b->order, &thickness));
+      D += 0.5 * w[k] * PetscMax(0., (n[0] * m[0] + n[1] * m[1]) / length) * thickness;
     }
     for (PetscInt d = 0; d < 2; ++d)
       if (b->condition[2 * e + d] == ABUT_CONTACT) traction[2 * k + d] = (f[0] * n[0] + f[1] * n[1]) / D * n[d] / PetscSqr(length);
   }
+  if (axis >= 0) ExtrapolateTraction(b->order, axis, x, traction);
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Known tractions at the nodes of each boundary element, [2*(order+1)*n] */
-static PetscErrorCode GetTractions(const AbutBoundary *b, PetscReal traction[])
+static PetscErrorCode GetTractions(AbutBody body, const AbutBoundary *b, PetscReal traction[])
 {
   PetscReal x[ABUT_ORDER_MAX + 1], w[ABUT_ORDER_MAX + 1];
   PetscInt *previous;
@@ -78,7 +117,7 @@ static PetscErrorCode GetTractions(const AbutBoundary *b, PetscReal traction[])
   PetscCall(PetscArraycpy(traction, b->traction, 2 * (b->order + 1) * b->n));
   for (PetscInt e = 0; e < b->n; ++e) previous[b->next[e]] = e;
   for (PetscInt e = 0; e < b->n; ++e)
-    if (IsContact(b, e)) SetContactTraction(b, e, previous[e], w, traction + 2 * (b->order + 1) * e);
+    if (IsContact(b, e)) PetscCall(SetContactTraction(body, b, e, previous[e], x, w, traction + 2 * (b->order + 1) * e));
   PetscCall(PetscFree(previous));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -87,10 +126,11 @@ static PetscErrorCode GetTractions(const AbutBoundary *b, PetscReal traction[])
 static PetscErrorCode IntegrateElement(AbutBody body, const AbutBoundary *b, PetscInt e, PetscInt c, PetscInt k, const PetscReal known[],
                                        const ResidualRule *rule, PetscReal *mean)
 {
-  PetscReal traction[2 * (ABUT_ORDER_MAX + 1)], N[ABUT_ORDER_MAX + 1];
+  PetscReal traction[2 * (ABUT_ORDER_MAX + 1)], thickness[ABUT_ORDER_MAX + 1], N[ABUT_ORDER_MAX + 1];
 
   PetscFunctionBegin;
   PetscCall(ResidualGetTraction(body, c, k, 0., 1., rule, traction));
+  PetscCall(ResidualGetThickness(body, c, k, 0., 1., rule, thickness));
   for (PetscInt q = 0; q < rule->n; ++q) {
     PetscCall(AbutEvaluateLobatto(b->order, 2. * rule->s[q] - 1., N, NULL));
     for (PetscInt d = 0; d < 2; ++d) {
@@ -98,7 +138,7 @@ static PetscErrorCode IntegrateElement(AbutBody body, const AbutBoundary *b, Pet
 
       if (b->condition[2 * e + d] == ABUT_DISPLACEMENT) continue;
       for (PetscInt i = 0; i <= b->order; ++i) r += N[i] * known[2 * i + d];
-      *mean += rule->w[q] * PetscSqr(r);
+      *mean += rule->w[q] * thickness[q] * PetscSqr(r);
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -118,7 +158,7 @@ PetscErrorCode ResidualAddBoundary(AbutBody body, const ResidualRule *rule, Pets
   PetscCall(AbutBodyGetBoundary(body, &b));
   PetscCall(PetscMalloc2(t->nsideedges, &element, 2 * (b->order + 1) * b->n, &known));
   PetscCall(FindElements(body, t, b, element));
-  PetscCall(GetTractions(b, known));
+  PetscCall(GetTractions(body, b, known));
   for (PetscInt i = 0; i < t->nsideedges; ++i) {
     const PetscInt c = t->sidecell[i], e = element[i];
     PetscInt       k    = 0;

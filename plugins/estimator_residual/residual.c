@@ -14,12 +14,15 @@
    With p the order, n the outward normal, h the height of the cell above a side of it, the residual res_e of a cell e is the root of the
    sum of
 
-     (h/p)^2 ||div s||^2 over the cell, h the largest of its heights;
+     (h/p)^2 ||div s + f||^2 over the cell, f the body force, h the largest of its heights;
      1/2 h/p ||[s n]||^2 over its sides inside the body, the coarse cell above hanging sides as well;
      h/p ||t - s n||^2 over its sides on the boundary, in the components without a given displacement.
 
-   There t is the given traction, or that of the contact pressure, -p n: then the term is the shear stress, and the normal stress plus the
-   pressure. The pressure comes from the nodal contact forces: force over the integral of the node's function, interpolated.
+   With axial symmetry all are integrals over a whole turn, and div s has the terms (s_rr - s_tt)/r and s_rz/r.
+
+   There t is the given traction, with that of springs under the displacement, or that of the contact pressure, -p n: then the term is the
+   shear stress, and the normal stress plus the pressure. The pressure comes from the nodal contact forces: force over the integral of the
+   node's function, interpolated.
 
    eta_e is C res_e in the scale of eq. (27): relative to the root mean square of the stress. R. Verfuerth, A review of a posteriori error
    estimation and adaptive mesh-refinement techniques (1996); with contact P. Hild and S. Nicaise, Residual a posteriori error estimators
@@ -32,10 +35,11 @@
    Where the pressure of a sharp punch ends: .57, .61, .80, .97 and .61, .62, .75, on four meshes. Cells 16 and 32 times as long as wide,
    along either axis: .85-1.5, but 2.8 for quads of order 1 across the direction of the error. Poisson's ratio from 0 to .4999: .6 to 1.3.
 
-   Limits: no body forces. Given tractions count by their L2 projection on the elements, so that what a mesh does not see of them is no
-   error. A locked stress, triangles of order 1 at Poisson's ratios above .49, leaves little of a residual: the estimate is then far too
-   small. The two bodies of a pair are judged one by one: penetration between nodes, or a pressure where there is a gap, is not in it. At a
-   node of a contact side that a support holds along the normal no pressure is known: it counts as free of pressure.
+   Limits: no nodal forces but those of tractions, contact and springs. Given tractions count by their L2 projection on the elements, so
+   that what a mesh does not see of them is no error. A locked stress, triangles of order 1 at Poisson's ratios above .49, leaves little of
+   a residual: the estimate is then far too small. The two bodies of a pair are judged one by one: penetration between nodes, or a pressure
+   where there is a gap, is not in it. At a node of a contact side that a support holds along the normal no pressure is known: it counts as
+   free of pressure.
 
 .seealso: `AbutEstimatorSetType()`, `AbutEstimatorScale()`, `ABUTESTIMATORFEMBEM`, `ABUTESTIMATORZZ`
 M*/
@@ -123,6 +127,9 @@ static PetscErrorCode AbutEstimatorCreate_Residual(AbutEstimator est)
   PetscCall(PetscNew(&residual));
   PetscCall(AbutEstimatorSetData(est, residual));
   PetscCall(AbutEstimatorSetOps(est, &ops));
+  PetscCall(AbutEstimatorSetFeatures(est, ABUT_FEATURE_BODY_FORCE_CONSTANT | ABUT_FEATURE_BODY_FORCE_VARYING | ABUT_FEATURE_FOUNDATION |
+                                            ABUT_FEATURE_PLANE_STRESS | ABUT_FEATURE_AXISYMMETRIC | ABUT_FEATURE_INITIAL_STRAIN |
+                                            ABUT_FEATURE_INITIAL_STRAIN_LINEAR));
   PetscCall(AbutEstimatorSetAbout(est, "what is left of equilibrium in cells, across their sides and on the boundary"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

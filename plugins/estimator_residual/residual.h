@@ -11,6 +11,9 @@ typedef struct {
 /* The traction of the finite-element stress at the points of the piece [from, to] of side k of a local cell */
 PETSC_INTERN PetscErrorCode ResidualGetTraction(AbutBody, PetscInt, PetscInt, PetscReal, PetscReal, const ResidualRule *, PetscReal[]);
 
+/* The thickness of the body there, 1 or 2 pi r */
+PETSC_INTERN PetscErrorCode ResidualGetThickness(AbutBody, PetscInt, PetscInt, PetscReal, PetscReal, const ResidualRule *, PetscReal[]);
+
 /* The length of side k of a local cell, and the height of the cell above it */
 PETSC_INTERN PetscErrorCode ResidualGetHeight(AbutMesh, PetscInt, PetscInt, PetscReal *, PetscReal *);
 

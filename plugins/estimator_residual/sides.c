@@ -33,6 +33,26 @@ PetscErrorCode ResidualGetTraction(AbutBody body, PetscInt c, PetscInt k, PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode ResidualGetThickness(AbutBody body, PetscInt c, PetscInt k, PetscReal from, PetscReal to, const ResidualRule *rule,
+                                    PetscReal thickness[])
+{
+  AbutMesh                mesh;
+  const AbutMeshTopology *t;
+  const PetscReal        *p, *q;
+
+  PetscFunctionBegin;
+  PetscCall(AbutBodyGetMesh(body, &mesh));
+  PetscCall(AbutMeshGetTopology(mesh, &t));
+  p = t->x + 2 * t->cell[t->corners * c + k];
+  q = t->x + 2 * t->cell[t->corners * c + (k + 1) % t->corners];
+  for (PetscInt i = 0; i < rule->n; ++i) {
+    const PetscReal at = from + rule->s[i] * (to - from), x[2] = {p[0] + at * (q[0] - p[0]), p[1] + at * (q[1] - p[1])};
+
+    PetscCall(AbutBodyGetThickness(body, x, &thickness[i]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode ResidualGetHeight(AbutMesh mesh, PetscInt c, PetscInt k, PetscReal *height, PetscReal *length)
 {
   const AbutMeshTopology *t;
@@ -112,7 +132,7 @@ PetscErrorCode ResidualAddJumps(AbutBody body, const ResidualRule *rule, PetscRe
   const AbutMeshTopology *t;
   Sides                   sides;
   Piece                   piece[2];
-  PetscReal              *jump, traction[2 * (ABUT_ORDER_MAX + 1)], height, length;
+  PetscReal              *jump, traction[2 * (ABUT_ORDER_MAX + 1)], thickness[ABUT_ORDER_MAX + 1], height, length;
 
   PetscFunctionBegin;
   PetscCall(AbutBodyGetMesh(body, &mesh));
@@ -132,9 +152,12 @@ PetscErrorCode ResidualAddJumps(AbutBody body, const ResidualRule *rule, PetscRe
     const PetscInt n = SidesGetPieces(&sides, i / t->corners, i % t->corners, piece);
 
     PetscCall(ResidualGetHeight(mesh, i / t->corners, i % t->corners, &height, &length));
-    for (PetscInt j = 0; j < n; ++j)
+    for (PetscInt j = 0; j < n; ++j) {
+      PetscCall(ResidualGetThickness(body, i / t->corners, i % t->corners, piece[j].from, piece[j].to, rule, thickness));
       for (PetscInt q = 0; q < 2 * rule->n; ++q)
-        square[i / t->corners] += 0.5 * height * length / n / t->order * rule->w[q / 2] * PetscSqr(jump[2 * rule->n * piece[j].slot + q]);
+        square[i / t->corners] += 0.5 * height * length / n / t->order * rule->w[q / 2] * thickness[q / 2] *
+                                  PetscSqr(jump[2 * rule->n * piece[j].slot + q]);
+    }
   }
   PetscCall(PetscFree(jump));
   PetscCall(SidesDestroy(&sides));

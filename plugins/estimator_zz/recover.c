@@ -184,6 +184,25 @@ static PetscErrorCode AbutPatchesSetUp_Private(const AbutSamples *a, AbutMesh me
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Adds `times` what balances a constant body force: to stresses s[3*n] of each cell, at reference points xi[2*n] */
+static PetscErrorCode AbutAddParticular_Private(AbutBody body, AbutMesh mesh, const AbutMeshTopology *t, PetscReal times, PetscInt n,
+                                                const PetscReal xi[], PetscReal s[])
+{
+  PetscInt features;
+
+  PetscFunctionBegin;
+  PetscCall(AbutBodyGetFeatures(body, &features));
+  if (!(features & ABUT_FEATURE_BODY_FORCE_CONSTANT)) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; i < n * t->ncells; ++i) {
+    PetscReal x[2], J[4], more[3];
+
+    PetscCall(AbutMeshMapPoint(mesh, i / n, xi + 2 * (i % n), x, J));
+    PetscCall(AbutEstimatorGetParticular(body, x, NULL, more));
+    for (PetscInt j = 0; j < 3; ++j) s[3 * i + j] += times * more[j];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The recovered stress at the nodes of the cells of this rank, [3*nodes*ncells].
 
    The continuous one of the patches is not the last word from order 2 on: beside a point where the stress is not smooth, as the edge of a
@@ -197,17 +216,21 @@ PetscErrorCode AbutEstimatorRecover_ZZ(AbutBody body, PetscReal s[])
   const AbutMeshTopology *t;
   AbutSamples            *samples;
   AbutPatches             p;
+  const PetscReal        *node;
   PetscReal              *atnode;
 
   PetscFunctionBegin;
   PetscCall(AbutBodyGetMesh(body, &mesh));
   PetscCall(AbutMeshGetTopology(mesh, &t));
+  PetscCall(AbutMeshGetReferenceNodes(mesh, &node));
   PetscCall(AbutSamplesCreate_Private(body, mesh, t, &samples));
+  PetscCall(AbutAddParticular_Private(body, mesh, t, -1., samples->n, samples->xi, samples->s));
   PetscCall(AbutPatchesSetUp_Private(samples, mesh, t, &p));
   PetscCall(PetscMalloc1(3 * t->nnodes, &atnode));
   PetscCall(AbutPatchesEvaluate_Private(body, mesh, t, &p, atnode));
   for (PetscInt i = 0; i < 3 * t->nodes * t->ncells; ++i) s[i] = atnode[3 * t->cellnode[i / 3] + i % 3];
   for (PetscInt c = 0; c < t->ncells && t->order > 1; ++c) PetscCall(AbutSamplesKeep_Private(samples, t, c, s + 3 * t->nodes * c));
+  PetscCall(AbutAddParticular_Private(body, mesh, t, 1., t->nodes, node, s));
   PetscCall(PetscFree(atnode));
   PetscCall(PetscFree4(p.moment, p.boundary, p.coef, p.good));
   PetscCall(AbutSamplesDestroy_Private(&samples));

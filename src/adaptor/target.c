@@ -5,15 +5,13 @@
 /* eta_e^2 |e|/|Omega| of every local cell: the square of its part of the body's relative error */
 static PetscErrorCode AbutAdaptorGetCellErrors_Private(AbutBody body, PetscInt n, const PetscReal eta[], PetscReal e2[])
 {
-  AbutMesh  mesh;
   PetscReal whole = 0.;
 
   PetscFunctionBegin;
-  PetscCall(AbutBodyGetMesh(body, &mesh));
   for (PetscInt c = 0; c < n; ++c) {
     PetscReal area;
 
-    PetscCall(AbutMeshGetCellArea(mesh, c, &area));
+    PetscCall(AbutBodyGetCellMeasure(body, c, &area));
     whole += area;
     e2[c] = area * PetscSqr(eta[c]);
   }

@@ -3,7 +3,7 @@
 static char help[] = "Unilateral contact of elastic bodies with adaptive meshes.\n\
   abut SCENE [-options]          for example: abut examples/layers/layers.yml -snes_monitor\n\
   abut SCENE -explain            what the scene would make, and every key with the file it is from; solves nothing\n\
-  abut -list                     the estimators, loops and adaptors there are to choose from\n\
+  abut -list                     the estimators, effects, loops and adaptors there are to choose from\n\
 Exit status: 0 converged and consistent, 1 bad input or a file that cannot be written, 2 not converged, 3 a limit was reached.\n\n";
 
 /* What there is to choose from, and where it was loaded from; -plugin adds to it */
@@ -18,6 +18,8 @@ static PetscErrorCode AbutList(void)
   PetscCall(AbutPluginAppendFromOptions(PETSC_COMM_WORLD));
   PetscCall(PetscViewerASCIIPrintf(viewer, "estimators, -estimator_type; several separated by commas\n"));
   PetscCall(AbutEstimatorViewTypes(PETSC_COMM_WORLD, viewer));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "effects, -NAME_effect_type\n"));
+  PetscCall(AbutEffectViewTypes(PETSC_COMM_WORLD, viewer));
   PetscCall(PetscViewerASCIIPrintf(viewer, "loops, -snes_type\n"));
   PetscCall(AbutLoopViewTypes(viewer));
   PetscCall(PetscViewerASCIIPrintf(viewer, "adaptors, -adaptor_type\n"));

@@ -37,10 +37,10 @@ static PetscErrorCode AbutBodyInitializePackage_Private(void)
    Level: beginner
 
    Note:
-   Limits: plane strain, linear isotropic material, small displacements. Above a Poisson's ratio of 0.49 quads of order 1 take the mean
-   dilatation of each cell, and triangles of order 1 lock; see `AbutBodyGetIntegration()`.
+   Limits: linear isotropic material, small displacements; plane strain unless `AbutBodySetKinematics()` says otherwise. Above a Poisson's
+   ratio of 0.49 quads of order 1 take the mean dilatation of each cell, and triangles of order 1 lock; see `AbutBodyGetIntegration()`.
 
-.seealso: `AbutBodySetFromOptions()`, `AbutBodySolve()`, `AbutBodyDestroy()`
+.seealso: `AbutBodySetFromOptions()`, `AbutBodySetKinematics()`, `AbutBodySolve()`, `AbutBodyDestroy()`
 @*/
 PetscErrorCode AbutBodyCreate(MPI_Comm comm, const char name[], AbutBody *body)
 {
@@ -54,6 +54,7 @@ PetscErrorCode AbutBodyCreate(MPI_Comm comm, const char name[], AbutBody *body)
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", name));
   PetscCall(PetscObjectSetOptionsPrefix((PetscObject)*body, prefix));
   (*body)->generation = -1;
+  (*body)->cell       = &AbutCellOps_Plane;
   PetscCall(AbutMeshCreate(comm, &(*body)->mesh));
   PetscCall(PetscObjectSetOptionsPrefix((PetscObject)(*body)->mesh, prefix));
   PetscCall(AbutBodyCreateSolver_Private(*body));
@@ -85,11 +86,9 @@ PetscErrorCode AbutBodySetMaterial(AbutBody body, PetscReal young, PetscReal poi
                  (double)young);
   AbutCheckInput(poisson > -1. && poisson < 0.5, comm, "%s_material_poisson: %g; plane strain needs -1 < nu < 0.5, for example 0.3", name,
                  (double)poisson);
-  body->young      = young;
-  body->poisson    = poisson;
-  body->lambda     = young * poisson / ((1. + poisson) * (1. - 2. * poisson));
-  body->mu         = young / (2. * (1. + poisson));
-  body->generation = -1;
+  body->young   = young;
+  body->poisson = poisson;
+  PetscCall(AbutBodySetLame_Private(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -107,7 +106,7 @@ PetscErrorCode AbutBodySetMaterial(AbutBody body, PetscReal young, PetscReal poi
 
    Level: beginner
 
-.seealso: `AbutBodySetMaterial()`
+.seealso: `AbutBodySetMaterial()`, `AbutBodyGetPlaneMaterial()`
 @*/
 PetscErrorCode AbutBodyGetMaterial(AbutBody body, PetscReal *young, PetscReal *poisson)
 {
@@ -184,8 +183,9 @@ PetscErrorCode AbutBodySetUp(AbutBody body)
   PetscCall(AbutGetProcessorTime(&begun));
   PetscCall(AbutMeshGetTopology(body->mesh, &t));
   PetscCall(PetscCalloc1(2 * t->nnodes, &body->nodeu));
-  PetscCall(AbutElementCreate_Private(body->mesh, &body->element));
-  body->meandilatation = (PetscBool)(t->corners == 4 && t->order == 1 && body->poisson > ABUT_ALMOST_INCOMPRESSIBLE);
+  PetscCall(AbutElementCreate_Private(body->mesh, t->order + (t->corners == 4 || body->kinematics == ABUT_AXISYMMETRIC), &body->element));
+  body->meandilatation = (PetscBool)(t->corners == 4 && t->order == 1 && body->kinematics != ABUT_PLANE_STRESS &&
+                                     body->poisson > ABUT_ALMOST_INCOMPRESSIBLE);
   PetscCall(VecCreateGhostBlock(PetscObjectComm((PetscObject)body), 2, 2 * t->nowned, PETSC_DECIDE, t->nunknown - t->nowned,
                                 t->global + t->nowned, &body->u));
   PetscCall(AbutBodyCreateVec(body, &body->load));
@@ -194,6 +194,8 @@ PetscErrorCode AbutBodySetUp(AbutBody body)
   PetscCall(VecDuplicate(body->load, &body->rhs));
   PetscCall(AbutBodyBoundarySetUp_Private(body));
   PetscCall(AbutBodyConditionsSetUp_Private(body));
+  PetscCall(AbutBodyHookForces_Private(body));
+  if (body->initial) PetscCall(AbutBodyInitialSetUp_Private(body));
   PetscCall(AbutBodyAssemble_Private(body));
   PetscCall(AbutBodyModesSetUp_Private(body));
   PetscCall(AbutBodyChooseSolver_Private(body, 2 * t->nglobal, PETSC_FALSE));
@@ -224,9 +226,11 @@ PetscErrorCode AbutBodyReset_Private(AbutBody body)
   PetscCall(AbutBodyModesReset_Private(body));
   PetscCall(MatDestroy(&body->A));
   PetscCall(MatDestroy(&body->Ac));
+  PetscCall(MatDestroy(&body->S));
   PetscCall(ISDestroy(&body->constrained));
   PetscCall(VecDestroy(&body->prescribed));
   PetscCall(VecDestroy(&body->load));
+  PetscCall(VecDestroy(&body->initialload));
   PetscCall(VecDestroy(&body->lift));
   PetscCall(VecDestroy(&body->contact));
   PetscCall(VecDestroy(&body->rhs));
@@ -261,6 +265,7 @@ PetscErrorCode AbutBodyDestroy(AbutBody *body)
   PetscCall(AbutBodyReset_Private(*body));
   for (PetscInt s = 0; s < ABUT_MAX_SIDES; ++s)
     for (PetscInt d = 0; d < 2; ++d) PetscCall(AbutExpressionDestroy(&(*body)->condition[s][d].value));
+  PetscCall(AbutHooksDestroy_Private(&(*body)->hooks));
   PetscCall(KSPDestroy(&(*body)->ksp));
   PetscCall(AbutMeshDestroy(&(*body)->mesh));
   PetscCall(PetscHeaderDestroy(body));
@@ -288,8 +293,8 @@ PetscErrorCode AbutBodyView(AbutBody body, PetscViewer viewer)
   MatSolverType solver = NULL;
 
   PetscFunctionBegin;
-  PetscCall(PetscViewerASCIIPrintf(viewer, "body %s: Young's modulus %g, Poisson's ratio %g, plane strain\n", ((PetscObject)body)->name,
-                                   (double)body->young, (double)body->poisson));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "body %s: Young's modulus %g, Poisson's ratio %g, %s\n", ((PetscObject)body)->name,
+                                   (double)body->young, (double)body->poisson, AbutKinematicsNames[body->kinematics]));
   PetscCall(PetscViewerASCIIPushTab(viewer));
   if (body->generation >= 0) {
     PetscCall(AbutMeshView(body->mesh, viewer));

@@ -259,8 +259,8 @@ PetscErrorCode AbutBodyCreateReaction_Private(AbutBody body, Vec *reaction)
 .  body - the body, solved
 
    Output Parameters:
-+  reaction - [2] sum of the reactions, stress times length
--  applied  - [2] sum of tractions and contact forces; in equilibrium the two cancel
++  reaction - [2] sum of the reactions, those of springs too, stress times length; with axial symmetry over the circumference, 0 along x
+-  applied  - [2] sum of loads and contact forces; in equilibrium the two cancel
 
    Level: intermediate
 
@@ -269,16 +269,19 @@ PetscErrorCode AbutBodyCreateReaction_Private(AbutBody body, Vec *reaction)
 PetscErrorCode AbutBodyGetReaction(AbutBody body, PetscReal reaction[2], PetscReal applied[2])
 {
   Vec       r;
-  PetscReal contact[2];
+  PetscReal contact[2], springs[2], work;
 
   PetscFunctionBegin;
   PetscCall(AbutBodyCreateReaction_Private(body, &r));
+  PetscCall(AbutBodyGetFoundationForce_Private(body, springs, &work));
   for (PetscInt d = 0; d < 2; ++d) {
     PetscCall(VecStrideSum(r, d, &reaction[d]));
     PetscCall(VecStrideSum(body->load, d, &applied[d]));
     PetscCall(VecStrideSum(body->contact, d, &contact[d]));
     applied[d] += contact[d];
+    reaction[d] += springs[d];
   }
+  if (body->kinematics == ABUT_AXISYMMETRIC) reaction[0] = applied[0] = 0.; /* what points away from the axis has no resultant */
   PetscCall(VecDestroy(&r));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -292,7 +295,7 @@ static PetscErrorCode AbutBoundaryProjectTraction_Private(AbutBody body, AbutBou
   PetscReal m[ABUT_SIDE_NODES_MAX], inverse[ABUT_SIDE_NODES_MAX * ABUT_SIDE_NODES_MAX];
 
   PetscFunctionBegin;
-  PetscCall(AbutBodyEdgeMoments_Private(body, b->side[i], d, p, q, m));
+  PetscCall(AbutBodyEdgeMoments_Private(body, b->side[i], d, p, q, PETSC_FALSE, m));
   PetscCall(AbutGetLobattoMassInverse(b->order, inverse));
   for (PetscInt k = 0; k < n; ++k)
     for (PetscInt j = 0; j < n; ++j) b->traction[2 * (n * i + k) + d] += inverse[n * k + j] * m[j] / half;
@@ -338,6 +341,7 @@ PetscErrorCode AbutBodyGetBoundary(AbutBody body, AbutBoundary **boundary)
   PetscCall(AbutBodyGatherBoundary_Private(body, body->u, &value));
   PetscCall(PetscArraycpy(b->u, value, 2 * nodes));
   PetscCall(AbutBodyUngatherBoundary_Private(body, &value));
+  PetscCall(AbutBodyAddFoundationTraction_Private(body, b));
   PetscCall(AbutBodyGatherBoundary_Private(body, body->contact, &value));
   PetscCall(PetscArraycpy(b->contact, value, 2 * nodes));
   PetscCall(AbutBodyUngatherBoundary_Private(body, &value));

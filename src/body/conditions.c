@@ -160,29 +160,34 @@ PetscErrorCode AbutBodyGetCondition(AbutBody body, PetscInt side, PetscInt compo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Moments m[order+1] of a prescribed traction against the functions of an element side. The substitution s = z^3(10-15z+6z^2) crowds the
+/* Moments m[order+1] of a prescribed traction against the functions of an element side, over a unit of thickness or (whole) over that of
+   the body. The substitution s = z^3(10-15z+6z^2) crowds the
    points at the ends, where a pressure may have a root or a kink; polynomials up to degree 4 and more are still integrated exactly. */
 PetscErrorCode AbutBodyEdgeMoments_Private(AbutBody body, PetscInt side, PetscInt component, const PetscReal a[2], const PetscReal b[2],
-                                           PetscReal m[])
+                                           PetscBool whole, PetscReal m[])
 {
   const AbutCondition *c      = &body->condition[side][component];
-  const PetscReal      length = PetscSqrtReal(PetscSqr(b[0] - a[0]) + PetscSqr(b[1] - a[1]));
-  PetscReal            z[12 + 4 * ABUT_ORDER_MAX], w[12 + 4 * ABUT_ORDER_MAX], N[ABUT_SIDE_NODES_MAX];
-  PetscInt             p;
+  const PetscReal      length = PetscSqrtReal(PetscSqr(b[0] - a[0]) + PetscSqr(b[1] - a[1])),
+                  normal[2]   = {(b[1] - a[1]) / length, (a[0] - b[0]) / length};
+  PetscReal z[12 + 4 * ABUT_ORDER_MAX], w[12 + 4 * ABUT_ORDER_MAX], N[ABUT_SIDE_NODES_MAX];
+  PetscInt  p;
 
   PetscFunctionBegin;
   PetscCall(AbutMeshGetOrder(body->mesh, &p));
   for (PetscInt i = 0; i <= p; ++i) m[i] = 0.;
-  if (c->type != ABUT_TRACTION || !c->value) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!AbutBodyHasTraction_Private(body, side, component)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscDTGaussQuadrature(12 + 4 * p, 0., 1., z, w));
   for (PetscInt q = 0; q < 12 + 4 * p; ++q) {
     const PetscReal s = z[q] * z[q] * z[q] * (10. - 15. * z[q] + 6. * z[q] * z[q]), ds = 30. * PetscSqr(z[q] * (1. - z[q]));
     const PetscReal x[2] = {a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1])};
-    PetscReal       t;
+    PetscReal       t = 0., more[2] = {0., 0.}, thickness = 1.;
 
-    PetscCall(AbutExpressionEvaluate(c->value, x, &t));
+    if (c->value) PetscCall(AbutExpressionEvaluate(c->value, x, &t));
+    PetscCall(AbutBodyHookTraction_Private(body, side, x, normal, more));
+    t += more[component];
     PetscCall(AbutEvaluateLobatto(p, 2. * s - 1., N, NULL));
-    for (PetscInt i = 0; i <= p; ++i) m[i] += w[q] * ds * length * t * N[i];
+    if (whole) PetscCall(AbutBodyGetThickness(body, x, &thickness));
+    for (PetscInt i = 0; i <= p; ++i) m[i] += w[q] * ds * length * t * N[i] * thickness;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -196,9 +201,9 @@ static PetscErrorCode AbutBodyLoad_Private(AbutBody body, const AbutMeshTopology
   PetscFunctionBegin;
   for (PetscInt i = 0; i < b->n; ++i)
     for (PetscInt d = 0; d < 2; ++d) {
-      if (body->condition[b->side[i]][d].type != ABUT_TRACTION || !body->condition[b->side[i]][d].value) continue;
+      if (!AbutBodyHasTraction_Private(body, b->side[i], d)) continue;
       PetscCall(AbutBodyEdgeMoments_Private(body, b->side[i], d, b->x + 2 * AbutBoundaryNode(b, i, 0),
-                                            b->x + 2 * AbutBoundaryNode(b, i, b->order), m));
+                                            b->x + 2 * AbutBoundaryNode(b, i, b->order), PETSC_TRUE, m));
       for (PetscInt k = 0; k <= b->order; ++k) {
         const PetscInt node = body->boundaryglobal[AbutBoundaryNode(b, i, k)];
 
@@ -210,7 +215,8 @@ static PetscErrorCode AbutBodyLoad_Private(AbutBody body, const AbutMeshTopology
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Which unknowns of the gathered boundary are prescribed, is[2*nnodes], and their values; the first side of a corner says it */
+/* Which unknowns of the gathered boundary are prescribed, is[2*nnodes], and their values; the first side of a corner says it. Points of an
+   axis of symmetry stay there. */
 static PetscErrorCode AbutBodyPrescribe_Private(AbutBody body, PetscBool is[], PetscReal value[])
 {
   const AbutBoundary *b = body->boundary;
@@ -228,6 +234,11 @@ static PetscErrorCode AbutBodyPrescribe_Private(AbutBody body, PetscBool is[], P
         PetscCall(AbutExpressionEvaluate(c->value, b->x + 2 * node, &value[2 * node + d]));
       }
     }
+  for (PetscInt i = 0; body->kinematics == ABUT_AXISYMMETRIC && i < b->nnodes; ++i) {
+    if (!AbutBodyOnAxis_Private(body, b->x + 2 * i)) continue;
+    is[2 * i]    = PETSC_TRUE;
+    value[2 * i] = 0.;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -267,7 +278,8 @@ PetscErrorCode AbutBodyConditionsSetUp_Private(AbutBody body)
 #define ABUT_SAMPLES 32
 
 /*@
-   AbutBodyCheck - Ends the run if what is given on a side is not a finite number there; needs no mesh yet
+   AbutBodyCheck - Ends the run if what is given on a side is not a finite number there, or a body with axial symmetry reaches beyond its
+   axis; needs no mesh yet
 
    Collective
 
@@ -288,6 +300,7 @@ PetscErrorCode AbutBodyCheck(AbutBody body)
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, ABUTBODY_CLASSID, 1);
+  PetscCall(AbutBodyCheckKinematics_Private(body));
   PetscCall(AbutMeshGetSideCount(body->mesh, &nsides));
   for (PetscInt s = 0; s < nsides; ++s)
     for (PetscInt d = 0; d < 2; ++d) {

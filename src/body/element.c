@@ -1,20 +1,10 @@
-#include <abut/private/bodyimpl.h> /*I "abutbody.h" I*/
-#include <petscdt.h>
+#include "element.h"
 
 /* Stiffness of one cell, eq. (11) of the paper, in plain loops: PetscFE's general ones cost ten times more. Most cells are parallelograms
    or triangles, whose map is affine: their matrices are sums of four that are integrated once, on the reference cell. */
 
-struct _n_AbutElement {
-  PetscInt         nodes, npoints;
-  PetscQuadrature  quadrature; /* on the reference cell, exact for affine cells ... */
-  const PetscReal *xi, *w;     /* [2*npoints], [npoints] ... its arrays */
-  PetscReal       *R[2][2];    /* [nodes*nodes] integrals of d_i N_a d_j N_b there */
-  PetscReal       *G;          /* [2*nodes] work */
-  PetscReal       *mean;       /* [2*nodes] work: integrals of the gradients */
-};
-
-/* What all cells of a mesh share */
-PetscErrorCode AbutElementCreate_Private(AbutMesh mesh, AbutElement *element)
+/* What all cells of a mesh share; with n Gauss points in each direction */
+PetscErrorCode AbutElementCreate_Private(AbutMesh mesh, PetscInt points, AbutElement *element)
 {
   const AbutMeshTopology *t;
   AbutElement             e;
@@ -25,7 +15,7 @@ PetscErrorCode AbutElementCreate_Private(AbutMesh mesh, AbutElement *element)
   PetscCall(AbutMeshGetTopology(mesh, &t));
   PetscCall(PetscNew(&e));
   e->nodes = n = t->nodes;
-  PetscCall(AbutMeshCreateQuadrature(mesh, t->corners == 4 ? t->order + 1 : t->order, &e->quadrature));
+  PetscCall(AbutMeshCreateQuadrature(mesh, points, &e->quadrature));
   PetscCall(PetscQuadratureGetData(e->quadrature, NULL, NULL, &e->npoints, &e->xi, &e->w));
   PetscCall(PetscCalloc6(n * n, &e->R[0][0], n * n, &e->R[0][1], n * n, &e->R[1][0], n * n, &e->R[1][1], 2 * n, &e->G, 2 * n, &e->mean));
   for (PetscInt q = 0; q < e->npoints; ++q) {
@@ -124,7 +114,7 @@ static PetscErrorCode AbutStiffnessQuadrature_Private(AbutBody body, PetscInt c,
 }
 
 /* K[(2*nodes)^2] of local cell c */
-PetscErrorCode AbutCellStiffness_Private(AbutBody body, PetscInt c, PetscReal K[])
+static PetscErrorCode AbutCellStiffness_Plane(AbutBody body, PetscInt c, PetscReal K[])
 {
   const AbutMeshTopology *t;
   const PetscReal        *p[4];
@@ -150,7 +140,7 @@ PetscErrorCode AbutCellStiffness_Private(AbutBody body, PetscInt c, PetscReal K[
 }
 
 /* The mean dilatation of local cell c in the last solve */
-PetscErrorCode AbutCellDilatation_Private(AbutBody body, PetscInt c, PetscReal *mean)
+static PetscErrorCode AbutCellDilatation_Plane(AbutBody body, PetscInt c, PetscReal *mean)
 {
   const AbutElement       e    = body->element;
   PetscReal               area = 0., sum = 0.;
@@ -169,6 +159,8 @@ PetscErrorCode AbutCellDilatation_Private(AbutBody body, PetscInt c, PetscReal *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+const AbutCellOps AbutCellOps_Plane = {AbutCellStiffness_Plane, AbutCellDilatation_Plane, AbutCellStresses_Plane};
+
 /*@C
    AbutBodyGetIntegration - How the dilatation enters the cells of a body
 
@@ -185,7 +177,8 @@ PetscErrorCode AbutCellDilatation_Private(AbutBody body, PetscInt c, PetscReal *
 
    Notes:
    Quads of order 1 above a Poisson's ratio of 0.49 take the mean, and higher orders need none. The area of a triangle of order 1 has to
-   stay as it is when its material is incompressible, and in a whole mesh this leaves next to no motion: take order 2 or quads.
+   stay as it is when its material is incompressible, and in a whole mesh this leaves next to no motion: take order 2 or quads. In plane
+   stress a sheet gets thicker instead, and nothing locks. With axial symmetry the mean is that over the volume.
 
    The nearer to 1/2, the worse the condition of any of them: conjugate gradients with BoomerAMG took 8 iterations at 0.3, 142 at 0.499 and
    412 at 0.49999 on 64 x 16 quads. The direct solver, `-NAME_ksp_type preonly -NAME_pc_type cholesky`, does not mind.
@@ -201,7 +194,9 @@ PetscErrorCode AbutBodyGetIntegration(AbutBody body, const char *name[], PetscBo
   PetscCall(AbutBodyNeedSetUp_Private(body));
   PetscCall(AbutMeshGetTopology(body->mesh, &t));
   if (name) *name = body->meandilatation ? "mean_dilatation" : "full";
-  if (locks) *locks = (PetscBool)(t->corners == 3 && t->order == 1 && body->poisson > ABUT_ALMOST_INCOMPRESSIBLE);
+  if (locks)
+    *locks = (PetscBool)(t->corners == 3 && t->order == 1 && body->kinematics != ABUT_PLANE_STRESS &&
+                         body->poisson > ABUT_ALMOST_INCOMPRESSIBLE);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,7 +1,7 @@
 #include <abut/private/bodyimpl.h> /*I "abutbody.h" I*/
 
-/* Rigid motions that no prescribed displacement resists. Their shapes follow from the box and the conditions; on a mesh they are the null
-   space of the stiffness, and a few springs that carry nothing make it a matrix with a factor. */
+/* Rigid motions that no prescribed displacement and no foundation resists. Their shapes follow from the box and the conditions; on a mesh
+   they are the null space of the stiffness, and a few springs that carry nothing make it a matrix with a factor. */
 
 #define ABUT_MOVE_X 0
 #define ABUT_MOVE_Y 1
@@ -14,11 +14,12 @@ typedef struct {
 
 /* A translation is free if its component is prescribed nowhere. A turn about (x0, y0) leaves u1 in peace on the line y = y0 and u2 on
    x = x0, so it is free if all prescribed u1 lie on one line of constant y, and all prescribed u2 on one of constant x. The ends of
-   straight segments stand for all their points. */
+   straight segments stand for all their points. With axial symmetry only moving along the axis leaves the circumferences as they are. */
 static PetscErrorCode AbutBodyFindFreeMotions_Private(AbutBody body, AbutFreeMotions *f)
 {
-  PetscReal lower[2], upper[2], least[2], most[2], size;
-  PetscInt  nsides, n[2] = {0, 0};
+  const PetscBool axial = (PetscBool)(body->kinematics == ABUT_AXISYMMETRIC);
+  PetscReal       lower[2], upper[2], least[2], most[2], size;
+  PetscInt        nsides, n[2] = {0, 0};
 
   PetscFunctionBegin;
   PetscCall(AbutMeshGetBox(body->mesh, lower, upper));
@@ -32,8 +33,10 @@ static PetscErrorCode AbutBodyFindFreeMotions_Private(AbutBody body, AbutFreeMot
     for (PetscInt d = 0; d < 2; ++d) {
       const PetscReal *ends;
       PetscInt         segments;
+      PetscBool        holds;
 
-      if (body->condition[s][d].type != ABUT_DISPLACEMENT) continue;
+      PetscCall(AbutBodyHoldsSide_Private(body, s, d, &holds));
+      if (!holds) continue;
       PetscCall(AbutMeshGetSideSegments(body->mesh, s, &segments, &ends));
       for (PetscInt end = 0; end < 2 * segments; ++end) {
         least[!d] = PetscMin(least[!d], ends[2 * end + !d]);
@@ -43,10 +46,10 @@ static PetscErrorCode AbutBodyFindFreeMotions_Private(AbutBody body, AbutFreeMot
     }
   f->n = 0;
   for (PetscInt d = 0; d < 2; ++d) {
-    if (!n[d]) f->kind[f->n++] = d ? ABUT_MOVE_Y : ABUT_MOVE_X;
+    if (!n[d] && (d || !axial)) f->kind[f->n++] = d ? ABUT_MOVE_Y : ABUT_MOVE_X;
     f->center[!d] = 0.5 * (n[d] ? least[!d] + most[!d] : lower[!d] + upper[!d]);
   }
-  if ((!n[0] || most[1] - least[1] <= 1e-10 * size) && (!n[1] || most[0] - least[0] <= 1e-10 * size)) f->kind[f->n++] = ABUT_TURN;
+  if (!axial && (!n[0] || most[1] - least[1] <= 1e-10 * size) && (!n[1] || most[0] - least[0] <= 1e-10 * size)) f->kind[f->n++] = ABUT_TURN;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -57,7 +60,7 @@ static void AbutMotionAt_Private(PetscInt kind, const PetscReal center[2], const
 }
 
 /*@
-   AbutBodyGetFreeModeCount - How many rigid motions no prescribed displacement resists; needs no mesh yet
+   AbutBodyGetFreeModeCount - How many rigid motions no prescribed displacement and no spring resists; needs no mesh yet
 
    Not Collective
 
@@ -377,6 +380,10 @@ PetscErrorCode AbutBodyGetImbalance(AbutBody body, PetscBool contact, PetscReal 
   PetscCall(AbutBodyNeedSetUp_Private(body));
   if (!body->nmodes) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecMDot(body->load, body->nmodes, body->mode, of[0]));
+  if (body->initial) { /* they have none, but for round-off */
+    PetscCall(VecMDot(body->initialload, body->nmodes, body->mode, of[1]));
+    for (PetscInt k = 0; k < body->nmodes; ++k) of[0][k] -= of[1][k];
+  }
   PetscCall(VecNorm(body->load, NORM_2, &size[0]));
   for (PetscInt k = 0; k < body->nmodes; ++k) of[1][k] = 0.;
   if (contact) {

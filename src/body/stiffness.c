@@ -159,7 +159,7 @@ static PetscErrorCode AbutBodyValues_Private(AbutBody body, const AbutMeshTopolo
     const PetscInt n = AbutCellAnchors_Private(t, c, node, W, &hanging);
 
     for (PetscInt i = 0; i < n; ++i) node[i] = t->global[t->unknown[node[i]]];
-    PetscCall(AbutCellStiffness_Private(body, c, K[0]));
+    PetscCall((*body->cell->stiffness)(body, c, K[0]));
     if (hanging) AbutCellCondense_Private(t->nodes, n, K[0], W, K[1]);
     PetscCall(MatSetValuesBlocked(body->A, n, node, n, node, K[hanging], ADD_VALUES));
   }
@@ -184,6 +184,7 @@ PetscErrorCode AbutBodyAssemble_Private(AbutBody body)
   PetscCall(AbutMeshGetTopology(body->mesh, &t));
   PetscCall(AbutBodyPreallocate_Private(body, t));
   PetscCall(AbutBodyValues_Private(body, t));
+  PetscCall(AbutBodyAssembleFoundation_Private(body));
   PetscCall(ISCreateStride(PetscObjectComm((PetscObject)body), 2 * t->nowned, 2 * t->firstowned, 1, &columns));
   PetscCall(MatCreateSubMatrix(body->A, body->constrained, columns, MAT_INITIAL_MATRIX, &body->Ac));
   PetscCall(ISDestroy(&columns));

@@ -69,6 +69,16 @@ static PetscErrorCode AbutEstimatorEstimate_Combined(AbutEstimator est, AbutBody
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode AbutEstimatorCheck_Combined(AbutEstimator est, AbutBody body)
+{
+  AbutCombined *combined;
+
+  PetscFunctionBegin;
+  PetscCall(AbutEstimatorGetData(est, &combined));
+  for (PetscInt i = 0; i < combined->n; ++i) PetscCall(AbutEstimatorCheck(combined->part[i], body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode AbutEstimatorSetFromOptions_Combined(AbutEstimator est, AbutOptionItems PetscOptionsObject)
 {
   AbutCombined *combined;
@@ -125,5 +135,6 @@ PetscErrorCode AbutEstimatorCreate_Combined(AbutEstimator est)
   }
   PetscCall(AbutEstimatorSetData(est, combined));
   PetscCall(AbutEstimatorSetOps(est, &ops));
+  est->check = AbutEstimatorCheck_Combined;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

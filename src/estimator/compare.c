@@ -180,7 +180,7 @@ static PetscErrorCode AbutEstimatorGetFloor_Private(AbutBody body, const AbutMes
    Level: advanced
 
    Notes:
-   The norm is that of the plane tensor, s11^2 + s22^2 + 2 s12^2.
+   The norm is that of the plane tensor, s11^2 + s22^2 + 2 s12^2, and with axial symmetry the hoop stress is in it; areas are volumes then.
 
    A body without stress, at rest or moved as a rigid one, has eta = 0.
 
@@ -190,18 +190,20 @@ PetscErrorCode AbutEstimatorScale(AbutBody body, PetscReal square, PetscReal eta
 {
   AbutMesh                mesh;
   const AbutMeshTopology *t;
-  PetscReal               sum[2] = {0., square}, area, floor = 0.; /* |Omega| and ||s||^2 */
+  PetscReal               sum[3] = {0., square, 0.}, measure, area, floor = 0.; /* |Omega|, ||s||^2, and the area in the plane */
 
   PetscFunctionBegin;
   PetscCall(AbutBodyGetMesh(body, &mesh));
   PetscCall(AbutMeshGetTopology(mesh, &t));
   for (PetscInt c = 0; c < t->ncells; ++c) {
+    PetscCall(AbutBodyGetCellMeasure(body, c, &measure));
     PetscCall(AbutMeshGetCellArea(mesh, c, &area));
-    sum[0] += area;
-    eta[c] /= area;
+    sum[0] += measure;
+    sum[2] += area;
+    eta[c] /= measure;
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
-  PetscCall(AbutEstimatorGetFloor_Private(body, t, sum[0], &floor));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  PetscCall(AbutEstimatorGetFloor_Private(body, t, sum[2], &floor));
   for (PetscInt c = 0; c < t->ncells; ++c) eta[c] = sum[1] / sum[0] > floor ? PetscSqrtReal(eta[c] * sum[0] / sum[1]) : 0.;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -285,7 +287,7 @@ PetscErrorCode AbutEstimatorGetNorms(AbutBody body, Vec eta, PetscReal *total, P
   for (PetscInt c = 0; c < t->ncells; ++c) {
     PetscReal area;
 
-    PetscCall(AbutMeshGetCellArea(mesh, c, &area));
+    PetscCall(AbutBodyGetCellMeasure(body, c, &area));
     sum[0] += area;
     sum[1] += area * PetscSqr(e[c]);
   }

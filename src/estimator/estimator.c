@@ -193,7 +193,9 @@ PetscErrorCode AbutEstimatorSetType(AbutEstimator est, AbutEstimatorType type)
   PetscTryTypeMethod(est, destroy);
   PetscCall(PetscMemzero(est->ops, sizeof(*est->ops)));
   est->data     = NULL;
+  est->check    = NULL;
   est->unknowns = 0;
+  est->features = 0;
   PetscCall(PetscObjectChangeTypeName((PetscObject)est, type));
   PetscCall((*create)(est));
   AbutCheckInput(est->ops->estimate, PetscObjectComm((PetscObject)est),
@@ -262,6 +264,40 @@ PetscErrorCode AbutEstimatorSetFromOptions(AbutEstimator est)
 }
 
 /*@
+   AbutEstimatorCheck - Ends the run if a body has something that the type of an estimator cannot do; needs no mesh yet
+
+   Collective
+
+   Input Parameters:
++  est  - the estimator, its type chosen
+-  body - the body
+
+   Level: developer
+
+   Note:
+   `AbutEstimatorEstimate()` asks again.
+
+.seealso: `AbutEstimatorSetFeatures()`, `AbutBodyGetFeatures()`
+@*/
+PetscErrorCode AbutEstimatorCheck(AbutEstimator est, AbutBody body)
+{
+  const char *what, *who, *name;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(est, ABUTESTIMATOR_CLASSID, 1);
+  if (est->check) {
+    PetscCall((*est->check)(est, body));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(AbutBodyGetName(body, &name));
+  PetscCall(AbutBodyFindFeature(body, est->features, &what, &who));
+  AbutCheckInput(!what, PetscObjectComm((PetscObject)est),
+                 "estimator_type: %s does not know how to judge %s with %s, that of %s; give residual, or leave %s out of adaptor_bodies",
+                 ((PetscObject)est)->type_name, name, what, who, name);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
    AbutEstimatorEstimate - Estimates the error of the last solve of a body, cell by cell
 
    Collective
@@ -290,6 +326,7 @@ PetscErrorCode AbutEstimatorEstimate(AbutEstimator est, AbutBody body, Vec eta)
   PetscValidHeaderSpecific(est, ABUTESTIMATOR_CLASSID, 1);
   PetscCheck(est->ops->estimate, PetscObjectComm((PetscObject)est), PETSC_ERR_ORDER,
              "Choose a type with AbutEstimatorSetType() or AbutEstimatorSetFromOptions() first");
+  if (body) PetscCall(AbutEstimatorCheck(est, body)); /* a type may do without */
   PetscCall(PetscLogEventBegin(ABUTESTIMATOR_Estimate, est, 0, 0, 0));
   est->unknowns = 0;
   PetscCall(VecGetArrayWrite(eta, &e));

@@ -23,6 +23,31 @@ PetscErrorCode AbutEstimatorSetOps(AbutEstimator est, const AbutEstimatorOps *op
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+   AbutEstimatorSetFeatures - Says what a type can do beyond plane strain with tractions and contact; called by the create routine of the
+   type
+
+   Logically Collective
+
+   Input Parameters:
++  est      - the estimator
+-  features - the sum of `ABUT_FEATURE_BODY_FORCE_CONSTANT` and so on
+
+   Level: advanced
+
+   Note:
+   A type that says nothing is not given a body that has any of them: `AbutEstimatorCheck()` refuses it.
+
+.seealso: `AbutEstimatorSetOps()`, `AbutEstimatorCheck()`, `AbutBodyGetFeatures()`
+@*/
+PetscErrorCode AbutEstimatorSetFeatures(AbutEstimator est, PetscInt features)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(est, ABUTESTIMATOR_CLASSID, 1);
+  est->features = features;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@C
    AbutEstimatorSetAbout - Says in one line what a type compares, for `abut -list`; called by the create routine of the type
 

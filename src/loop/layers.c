@@ -188,7 +188,7 @@ static PetscErrorCode AbutLayerSides_Private(AbutInterface f, AbutContactModel m
   PetscCall(AbutBodyGetFarSide(bodies[t % 2], normal, &far, &condition));
   if (othersides[r % 2] != sides[t % 2] && othersides[r % 2] != far) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(AbutBodyGetHeight(bodies[t % 2], normal, &height));
-  PetscCall(AbutBodyGetMaterial(bodies[t % 2], &young, &poisson));
+  PetscCall(AbutBodyGetPlaneMaterial(bodies[t % 2], &young, &poisson));
   PetscCall(PetscMalloc1(m[t].n, &w));
   for (PetscInt k = 0; k < m[t].n; ++k) {
     const PetscReal compliance = 2. * (1. - poisson * poisson) / young, longest = 0.5 * PETSC_PI / m[t].length;

@@ -12,7 +12,7 @@
 -  x    - [2] the point
 
    Output Parameter:
-.  gap - f, length; without `-NAME_pair_gap` the distance of the sides
+.  gap - f, length; without `-NAME_pair_gap` the distance of the sides; less what the sides stand out
 
    Level: intermediate
 
@@ -21,11 +21,22 @@
 PetscErrorCode AbutPairGetGap(AbutPair pair, const PetscReal x[2], PetscReal *gap)
 {
   PetscFunctionBegin;
-  if (pair->gap) {
-    PetscCall(AbutExpressionEvaluate(pair->gap, x, gap));
-    PetscFunctionReturn(PETSC_SUCCESS);
+  if (pair->gap) PetscCall(AbutExpressionEvaluate(pair->gap, x, gap));
+  else PetscCall(AbutPairGetDistance_Private(pair, gap));
+  PetscCall(AbutPairCloseGap_Private(pair, x, gap));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Sides that stand out of their bodies leave less of a gap */
+PetscErrorCode AbutPairCloseGap_Private(AbutPair pair, const PetscReal x[2], PetscReal *gap)
+{
+  PetscFunctionBegin;
+  for (PetscInt s = 0; s < 2 && pair->body[s]; ++s) {
+    PetscReal offset;
+
+    PetscCall(AbutBodyGetSideOffset(pair->body[s], pair->side[s], x, &offset));
+    *gap -= offset;
   }
-  PetscCall(AbutPairGetDistance_Private(pair, gap));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

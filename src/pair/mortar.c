@@ -32,7 +32,7 @@ static PetscErrorCode AbutPairChoosePressureSide_Private(AbutPair pair)
   }
   pair->which = count[1] > count[0] || (count[1] == count[0] && pair->nodes[1]->order < pair->nodes[0]->order);
   for (PetscInt s = 0; s < 2; ++s) {
-    PetscCall(AbutBodyGetMaterial(pair->body[s], &young[s], &poisson[s]));
+    PetscCall(AbutBodyGetPlaneMaterial(pair->body[s], &young[s], &poisson[s]));
     modulus[s] = young[s] / (1. - poisson[s] * poisson[s]);
   }
   if (modulus[pair->which] > ABUT_STIFFER * modulus[!pair->which]) pair->which = !pair->which;

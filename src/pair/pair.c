@@ -20,8 +20,8 @@ static const char *const AbutPressureSideNames[] = {"first", "second", "finer", 
 +  -NAME_pair_bodies <first,second> - names of the two bodies; E and H of the first give theta. One name: the other one is rigid
 .  -NAME_pair_sides <first,second>  - their sides, or the side of the one body
 .  -NAME_pair_gap <f>               - gap as number, formula in x and y, or CSV file, length; default: the distance of the sides
-.  -NAME_pair_obstacle <d>          - with one body: distance from a rigid obstacle, positive where the body may be, formula in x and y, length:
-                                      y for the plane y = 0, sqrt(x^2+(y-8)^2)-8 for a disc
+.  -NAME_pair_obstacle <d>          - with one body: distance from a rigid obstacle, positive where the body may be, formula in x and y,
+                                      length: y for the plane y = 0, sqrt(x^2+(y-8)^2)-8 for a disc
 .  -NAME_pair_penalty <c>           - theta = c H/E, default 0.05; 0 for exact contact
 .  -NAME_pair_theta <theta>         - theta itself, length/stress
 .  -NAME_pair_height <H>            - H, where it is not the extent of the first body along the normal, length
@@ -454,7 +454,7 @@ PetscErrorCode AbutPairGetCompliance(AbutPair pair, PetscReal compliance[2])
     PetscCall(AbutBodyGetMesh(pair->body[s], &mesh));
     PetscCall(AbutMeshGetSideDirection(mesh, pair->side[s], normal));
     PetscCall(AbutBodyGetHeight(pair->body[s], normal, &height));
-    PetscCall(AbutBodyGetMaterial(pair->body[s], &young, &poisson));
+    PetscCall(AbutBodyGetPlaneMaterial(pair->body[s], &young, &poisson));
     compliance[s] = height * (1. - poisson * poisson) / young;
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,8 +1,8 @@
 #include <abut/private/pairimpl.h>
 
-/* How the two sides of a pair lie against each other. Along straight sides one coordinate serves both. Along curved ones, which are polygons
-   here, every point of the pressure side looks along a direction that runs continuously from vertex to vertex (the mean of the normals there)
-   and sees at most one point of the other side; there is one normal for both. */
+/* How the two sides of a pair lie against each other. Along straight sides one coordinate serves both. Along curved ones, which are
+   polygons here, every point of the pressure side looks along a direction that runs continuously from vertex to vertex (the mean of the
+   normals there) and sees at most one point of the other side; there is one normal for both. */
 
 static PetscReal AbutCross_Private(const PetscReal a[2], const PetscReal b[2])
 {
@@ -162,12 +162,16 @@ static PetscErrorCode AbutPairCurvedGap_Private(AbutPair pair, const PetscReal x
 
   PetscFunctionBegin;
   PetscCall(AbutPairOnCurve_Private(pair, pair->which, x, own));
+  if (!pair->obstacle && (pair->gap || pair->straight)) {
+    PetscCall(AbutPairGetGap(pair, own, gap));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   if (pair->obstacle) PetscCall(AbutPairObstacleGap_Private(pair, own, normal, gap));
-  else if (pair->gap || pair->straight) PetscCall(AbutPairGetGap(pair, own, gap));
   else {
     PetscCall(AbutPairOnCurve_Private(pair, !pair->which, y, other));
     *gap = (other[0] - own[0]) * normal[0] + (other[1] - own[1]) * normal[1];
   }
+  PetscCall(AbutPairCloseGap_Private(pair, own, gap));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -127,8 +127,8 @@ static PetscErrorCode AbutPairNearestOther_Private(AbutPair pair, const PetscRea
 .  pair - the pair, its keys read
 
    Output Parameters:
-+  n - how many: the two ends of the shared part of straight sides, which say all of rigid motions; otherwise one for each segment of the first
-       side that faces the second
++  n - how many: the two ends of the shared part of straight sides, which say all of rigid motions; otherwise one for each segment of the
+       first side that faces the second
 -  x - [6*n] for each: the point on the first side, that on the second, and the outward normal of the first; free it with `PetscFree()`
 
    Level: developer

@@ -82,29 +82,31 @@ static PetscErrorCode AbutFieldsCreateCells_Private(MPI_Comm comm, const AbutMes
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Stress at the centre of each cell; in plane strain s33 = nu (s11 + s22) */
+/* Stress at the centre of each cell */
 static PetscErrorCode AbutFieldsCreateStress_Private(MPI_Comm comm, AbutBody body, const AbutMeshTopology *t, Vec *stress, Vec *von_mises)
 {
   const PetscReal centre[2][2] = {
     {1. / 3., 1. / 3.},
     {0.,      0.     }
   };
-  PetscReal    young, nu, s[3];
+  PetscReal    N[ABUT_CELL_NODES_MAX], dN[2 * ABUT_CELL_NODES_MAX], s[4];
+  AbutMesh     mesh;
   PetscScalar *row, *vm;
 
   PetscFunctionBegin;
-  PetscCall(AbutBodyGetMaterial(body, &young, &nu));
+  PetscCall(AbutBodyGetMesh(body, &mesh));
+  PetscCall(AbutMeshEvaluateBasis(mesh, centre[t->corners == 4], N, dN));
   PetscCall(AbutFieldsCreateVec_Private(comm, "stress", 4, t->ncells, PETSC_DETERMINE, stress));
   PetscCall(AbutFieldsCreateVec_Private(comm, "von_mises", 1, t->ncells, PETSC_DETERMINE, von_mises));
   PetscCall(VecGetArrayWrite(*stress, &row));
   PetscCall(VecGetArrayWrite(*von_mises, &vm));
   for (PetscInt c = 0; c < t->ncells; ++c) {
-    PetscCall(AbutBodyGetCellStress(body, c, centre[t->corners == 4], s));
+    PetscCall(AbutBodyGetCellStresses3D(body, c, 1, centre[t->corners == 4], dN, s, s + 3));
     row[4 * c]     = s[0];
     row[4 * c + 1] = s[1];
-    row[4 * c + 2] = nu * (s[0] + s[1]);
+    row[4 * c + 2] = s[3];
     row[4 * c + 3] = s[2];
-    PetscCall(AbutVonMises(s, nu, &vm[c]));
+    PetscCall(AbutVonMises(s, &vm[c]));
   }
   PetscCall(VecRestoreArrayWrite(*stress, &row));
   PetscCall(VecRestoreArrayWrite(*von_mises, &vm));

@@ -46,13 +46,44 @@ static PetscInt AbutSceneEdgeSide_Private(const AbutContactEdge *edge, AbutBody 
   return edge->body[0] == body ? edge->side[0] : (edge->body[1] == body ? edge->side[1] : -1);
 }
 
-/* Does an element side on the boundary touch the point, seen along it? */
-PetscBool AbutSideTouches_Private(const AbutMeshTopology *t, PetscInt k, const PetscReal x[2])
-{
-  const PetscReal *a = t->x + 2 * t->sideedge[3 * k], *b = t->x + 2 * t->sideedge[3 * k + 1], d[2] = {b[0] - a[0], b[1] - a[1]};
-  const PetscReal  z = ((x[0] - a[0]) * d[0] + (x[1] - a[1]) * d[1]) / (d[0] * d[0] + d[1] * d[1]);
+#define ABUT_NEAR 0.25 /* of the body: sides of a pair are nearer than that, and across a round body it is further */
 
-  return (PetscBool)(z >= -ABUT_TOUCH && z <= 1. + ABUT_TOUCH);
+/* Does an element side on the boundary touch the point, seen along it? */
+PetscErrorCode AbutSideTouches_Private(AbutMesh mesh, PetscInt k, const PetscReal x[2], PetscBool *touches)
+{
+  const AbutMeshTopology *t;
+  const PetscReal        *a, *b;
+  PetscReal               d[2], r[2], h2, z, away, lower[2], upper[2];
+
+  PetscFunctionBegin;
+  PetscCall(AbutMeshGetTopology(mesh, &t));
+  PetscCall(AbutMeshGetBox(mesh, lower, upper));
+  a = t->x + 2 * t->sideedge[3 * k];
+  b = t->x + 2 * t->sideedge[3 * k + 1];
+  for (PetscInt i = 0; i < 2; ++i) {
+    d[i] = b[i] - a[i];
+    r[i] = x[i] - a[i];
+  }
+  h2       = d[0] * d[0] + d[1] * d[1];
+  z        = (r[0] * d[0] + r[1] * d[1]) / h2;
+  away     = PetscAbsReal(r[0] * d[1] - r[1] * d[0]) / PetscSqrtReal(h2);
+  *touches = (PetscBool)(z >= -ABUT_TOUCH && z <= 1. + ABUT_TOUCH &&
+                         away <= ABUT_NEAR * PetscMax(upper[0] - lower[0], upper[1] - lower[1]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Does element side k of the boundary belong to the edge's side of the body, and touch it? */
+static PetscErrorCode AbutSceneIsAtEdge_Private(const AbutContactEdge *edge, AbutBody body, const AbutMeshTopology *t, PetscInt k,
+                                                PetscBool *is)
+{
+  AbutMesh mesh;
+
+  PetscFunctionBegin;
+  *is = PETSC_FALSE;
+  if (t->sideedge[3 * k + 2] != AbutSceneEdgeSide_Private(edge, body)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AbutBodyGetMesh(body, &mesh));
+  PetscCall(AbutSideTouches_Private(mesh, k, edge->x, is));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The level that the marked cells at each edge are to reach, -1 where none is marked */
@@ -67,12 +98,13 @@ static PetscErrorCode AbutSceneWantedLevels_Private(AbutScene scene, AbutBody bo
   PetscCall(AbutMeshGetTopology(mesh, &t));
   PetscCall(AbutAdaptorGetLevels(scene->adaptor, &jump, &last));
   for (PetscInt e = 0; e < scene->nedges; ++e) {
-    const PetscInt side = AbutSceneEdgeSide_Private(&scene->edge[e], body);
-
     level[e] = -1;
-    for (PetscInt k = 0; k < t->nsideedges; ++k)
-      if (t->sideedge[3 * k + 2] == side && mark[t->sidecell[k]] && AbutSideTouches_Private(t, k, scene->edge[e].x))
-        level[e] = PetscMax(level[e], PetscMin(t->level[t->sidecell[k]] + jump, last));
+    for (PetscInt k = 0; k < t->nsideedges; ++k) {
+      PetscBool is;
+
+      PetscCall(AbutSceneIsAtEdge_Private(&scene->edge[e], body, t, k, &is));
+      if (is && mark[t->sidecell[k]]) level[e] = PetscMax(level[e], PetscMin(t->level[t->sidecell[k]] + jump, last));
+    }
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, level, (PetscMPIInt)scene->nedges, MPIU_INT, MPI_MAX, PetscObjectComm((PetscObject)scene)));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -98,9 +130,10 @@ static PetscErrorCode AbutSceneJump_Private(AbutScene scene, AbutBody body, cons
     for (PetscInt e = 0; e < scene->nedges; ++e)
       for (PetscInt k = 0; k < t->nsideedges; ++k) {
         const PetscInt c = t->sidecell[k];
+        PetscBool      is;
 
-        if (t->level[c] >= level[e] || t->sideedge[3 * k + 2] != AbutSceneEdgeSide_Private(&scene->edge[e], body)) continue;
-        if (!AbutSideTouches_Private(t, k, scene->edge[e].x)) continue;
+        PetscCall(AbutSceneIsAtEdge_Private(&scene->edge[e], body, t, k, &is));
+        if (!is || t->level[c] >= level[e]) continue;
         mark[c] = PETSC_TRUE;
         ++marked;
       }
@@ -164,9 +197,12 @@ static PetscErrorCode AbutSceneKeepCells_Private(AbutScene scene, AbutBody body)
   PetscCall(AbutBodyGetMesh(body, &mesh));
   PetscCall(AbutMeshGetTopology(mesh, &t));
   for (PetscInt e = 0; e < scene->nedges; ++e)
-    for (PetscInt k = 0; k < t->nsideedges; ++k)
-      if (t->sideedge[3 * k + 2] == AbutSceneEdgeSide_Private(&scene->edge[e], body) && AbutSideTouches_Private(t, k, scene->edge[e].x))
-        PetscCall(AbutMeshKeepCell(mesh, t->sidecell[k]));
+    for (PetscInt k = 0; k < t->nsideedges; ++k) {
+      PetscBool is;
+
+      PetscCall(AbutSceneIsAtEdge_Private(&scene->edge[e], body, t, k, &is));
+      if (is) PetscCall(AbutMeshKeepCell(mesh, t->sidecell[k]));
+    }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

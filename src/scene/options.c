@@ -37,17 +37,70 @@ PetscErrorCode AbutSceneReadNames_Private(AbutScene scene, AbutOptionItems Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode AbutSceneCheckDistinct_Private(AbutScene scene, PetscInt n, char *const names[], PetscInt m, char *const others[])
+/* What a scene names */
+typedef enum {
+  ABUT_NAMES_BODIES,
+  ABUT_NAMES_EFFECTS,
+  ABUT_NAMES_PAIRS,
+  ABUT_NAMES_PROBES,
+  ABUT_NAMES
+} AbutNameKind;
+
+typedef struct {
+  PetscInt n;
+  char    *name[ABUT_MAX_NAMES];
+} AbutNames;
+
+static PetscErrorCode AbutSceneCheckDistinct_Private(AbutScene scene, const AbutNames *some, const AbutNames *others)
 {
   PetscBool match;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < n; ++i)
-    for (PetscInt j = 0; j < m; ++j) {
-      PetscCall(PetscStrcasecmp(names[i], others[j], &match));
+  for (PetscInt i = 0; i < some->n; ++i)
+    for (PetscInt j = 0; j < others->n; ++j) {
+      PetscCall(PetscStrcasecmp(some->name[i], others->name[j], &match));
       AbutCheckInput(!match, PetscObjectComm((PetscObject)scene),
-                     "scene: the name \"%s\" is given to two things; bodies, pairs and probes need different names", names[i]);
+                     "scene: the name \"%s\" is given to two things; bodies, effects, pairs and probes need different names",
+                     some->name[i]);
     }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutSceneReadAllNames_Private(AbutScene scene, AbutOptionItems PetscOptionsObject, AbutNames all[ABUT_NAMES])
+{
+  static const char *const opt[ABUT_NAMES]  = {"-scene_bodies", "-scene_effects", "-scene_pairs", "-scene_probes"};
+  static const char *const text[ABUT_NAMES] = {"Names of the bodies", "Names of what acts on them", "Names of the possible contacts",
+                                               "Names of the points of the record"};
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < ABUT_NAMES; ++k)
+    PetscCall(AbutSceneReadNames_Private(scene, PetscOptionsObject, opt[k], text[k], &all[k].n, all[k].name));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Bodies, what acts on them, and what they meet; effects come before pairs, which ask the bodies what they are */
+static PetscErrorCode AbutSceneMakeNamed_Private(AbutScene scene, AbutNames all[ABUT_NAMES])
+{
+  MPI_Comm comm = PetscObjectComm((PetscObject)scene);
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < ABUT_NAMES; ++i)
+    for (PetscInt j = i + 1; j < ABUT_NAMES; ++j) PetscCall(AbutSceneCheckDistinct_Private(scene, &all[i], &all[j]));
+  for (PetscInt i = 0; i < all[ABUT_NAMES_BODIES].n; ++i) {
+    PetscCall(AbutBodyCreate(comm, all[ABUT_NAMES_BODIES].name[i], &scene->body[scene->nbodies++]));
+    PetscCall(AbutBodySetFromOptions(scene->body[i]));
+  }
+  for (PetscInt i = 0; i < all[ABUT_NAMES_EFFECTS].n; ++i) {
+    PetscCall(AbutEffectCreate(comm, all[ABUT_NAMES_EFFECTS].name[i], &scene->effect[scene->neffects++]));
+    PetscCall(AbutEffectSetFromOptions(scene->effect[i], scene->nbodies, scene->body));
+  }
+  for (PetscInt i = 0; i < all[ABUT_NAMES_PAIRS].n; ++i) {
+    PetscCall(AbutPairCreate(comm, all[ABUT_NAMES_PAIRS].name[i], &scene->pair[scene->npairs++]));
+    PetscCall(AbutPairSetFromOptions(scene->pair[i], scene->nbodies, scene->body));
+  }
+  PetscCall(AbutSceneProbesFromOptions_Private(scene, all[ABUT_NAMES_PROBES].n, all[ABUT_NAMES_PROBES].name));
+  for (PetscInt k = 0; k < ABUT_NAMES; ++k)
+    for (PetscInt i = 0; i < all[k].n; ++i) PetscCall(PetscFree(all[k].name[i]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -77,13 +130,6 @@ static PetscErrorCode AbutSceneErrorFromOptions_Private(AbutScene scene, PetscBo
     for (PetscInt b = 0; b < scene->nbodies; ++b)
       if (scene->body[b] == body) scene->estimates[b] = PETSC_TRUE;
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode AbutSceneFreeNames_Private(PetscInt n, char *names[])
-{
-  PetscFunctionBegin;
-  for (PetscInt i = 0; i < n; ++i) PetscCall(PetscFree(names[i]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -197,6 +243,7 @@ static PetscErrorCode AbutSceneCheckContactKeys_Private(AbutScene scene)
 
    Options Database Keys:
 +  -scene_bodies <names>   - bodies, see `AbutBodyCreate()` for their keys
+.  -scene_effects <names>  - what acts on them, see `AbutEffectSetFromOptions()`
 .  -scene_pairs <names>    - possible contacts, see `AbutPairCreate()`
 .  -scene_probes <names>   - points of the record: `-NAME_probe_body`, `-NAME_probe_point x,y`
 .  -scene_interleave       - one sweep and one adaptation a cycle, Fig. 2 of the paper; needs ddneumann
@@ -224,16 +271,14 @@ static PetscErrorCode AbutSceneCheckContactKeys_Private(AbutScene scene)
 PetscErrorCode AbutSceneSetFromOptions(AbutScene scene)
 {
   MPI_Comm  comm = PetscObjectComm((PetscObject)scene);
-  char     *bodies[ABUT_MAX_NAMES], *pairs[ABUT_MAX_NAMES], *probes[ABUT_MAX_NAMES], type[64] = "";
-  PetscInt  nbodies, npairs, nprobes;
+  AbutNames names[ABUT_NAMES];
+  char      type[64] = "";
   PetscBool adapts, estimates, profile, hastol;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(scene, ABUTSCENE_CLASSID, 1);
   PetscObjectOptionsBegin((PetscObject)scene);
-  PetscCall(AbutSceneReadNames_Private(scene, PetscOptionsObject, "-scene_bodies", "Names of the bodies", &nbodies, bodies));
-  PetscCall(AbutSceneReadNames_Private(scene, PetscOptionsObject, "-scene_pairs", "Names of the possible contacts", &npairs, pairs));
-  PetscCall(AbutSceneReadNames_Private(scene, PetscOptionsObject, "-scene_probes", "Names of the points of the record", &nprobes, probes));
+  PetscCall(AbutSceneReadAllNames_Private(scene, PetscOptionsObject, names));
   PetscCall(AbutOptionsBool(PetscOptionsObject, "-scene_interleave", "One sweep and one adaptation a cycle", &scene->interleave, NULL));
   if (scene->interleave)
     PetscCall(AbutOptionsReal(PetscOptionsObject, "-scene_eps_u", "Relative change of the traces at the end", &scene->eps_u, NULL));
@@ -247,23 +292,9 @@ PetscErrorCode AbutSceneSetFromOptions(AbutScene scene)
   AbutCheckInput(!hastol || (scene->tol > 0. && scene->tol < 1.), comm,
                  "scene_tol: %g is not a relative error; give a number between 0 and 1, for example 0.01", (double)scene->tol);
   AbutCheckInput(scene->eps_u > 0., comm, "scene_eps_u: %g; give a positive number, for example 0.0015", (double)scene->eps_u);
-  AbutCheckInput(nbodies > 0, comm,
+  AbutCheckInput(names[ABUT_NAMES_BODIES].n > 0, comm,
                  "scene_bodies: missing; give the names of the bodies, or a scene file, for example examples/layers/layers.yml");
-  PetscCall(AbutSceneCheckDistinct_Private(scene, nbodies, bodies, npairs, pairs));
-  PetscCall(AbutSceneCheckDistinct_Private(scene, nbodies, bodies, nprobes, probes));
-  PetscCall(AbutSceneCheckDistinct_Private(scene, npairs, pairs, nprobes, probes));
-  for (PetscInt i = 0; i < nbodies; ++i) {
-    PetscCall(AbutBodyCreate(comm, bodies[i], &scene->body[scene->nbodies++]));
-    PetscCall(AbutBodySetFromOptions(scene->body[i]));
-  }
-  for (PetscInt i = 0; i < npairs; ++i) {
-    PetscCall(AbutPairCreate(comm, pairs[i], &scene->pair[scene->npairs++]));
-    PetscCall(AbutPairSetFromOptions(scene->pair[i], scene->nbodies, scene->body));
-  }
-  PetscCall(AbutSceneProbesFromOptions_Private(scene, nprobes, probes));
-  PetscCall(AbutSceneFreeNames_Private(nbodies, bodies));
-  PetscCall(AbutSceneFreeNames_Private(npairs, pairs));
-  PetscCall(AbutSceneFreeNames_Private(nprobes, probes));
+  PetscCall(AbutSceneMakeNamed_Private(scene, names));
   PetscCall(AbutInterfaceCreate(comm, scene->nbodies, scene->body, scene->npairs, scene->pair, &scene->iface));
   PetscCall(AbutSceneErrorFromOptions_Private(scene, (PetscBool)(adapts || hastol), estimates));
   if (scene->npairs) PetscCall(AbutSceneSolverFromOptions_Private(scene));

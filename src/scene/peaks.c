@@ -16,9 +16,11 @@ static PetscErrorCode AbutSceneMarkPeak_Private(AbutBody body, PetscInt side, co
   PetscCall(AbutMeshGetTopology(mesh, &t));
   for (PetscInt k = 0; k < t->nsideedges; ++k) {
     const PetscReal *a = t->x + 2 * t->sideedge[3 * k], *b = t->x + 2 * t->sideedge[3 * k + 1];
+    PetscBool        touches;
 
     if (t->sideedge[3 * k + 2] != side || PetscSqr(b[0] - a[0]) + PetscSqr(b[1] - a[1]) < PetscSqr(enough)) continue;
-    if (AbutSideTouches_Private(t, k, peak->x)) mark[t->sidecell[k]] = PETSC_TRUE;
+    PetscCall(AbutSideTouches_Private(mesh, k, peak->x, &touches));
+    if (touches) mark[t->sidecell[k]] = PETSC_TRUE;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -9,9 +9,14 @@ PetscErrorCode AbutSceneWarnOfOverlap_Private(AbutScene scene)
   for (PetscInt i = 0; i < scene->npairs; ++i) {
     PetscReal   depth, x[2];
     const char *name;
+    AbutBody    body[2];
+    PetscInt    side[2];
+    PetscBool   meant[2];
 
+    PetscCall(AbutPairGetBodies(scene->pair[i], body, side));
+    for (PetscInt s = 0; s < 2; ++s) PetscCall(AbutBodyHasSideOffset(body[s], side[s], &meant[s]));
     PetscCall(AbutPairGetOverlap(scene->pair[i], &depth, x));
-    if (depth == 0.) continue;
+    if (depth == 0. || meant[0] || meant[1]) continue;
     PetscCall(AbutPairGetName(scene->pair[i], &name));
     PetscCall(PetscPrintf(PetscObjectComm((PetscObject)scene),
                           "warning: pair %s: at first the sides overlap, by %.6g at (%.6g, %.6g), and contact pushes them apart; if this "

@@ -57,7 +57,10 @@ PetscErrorCode AbutSceneSetUp(AbutScene scene)
   scene->setupcalled = PETSC_TRUE;
   PetscCall(AbutOptionsCheckAllRead(PetscObjectComm((PetscObject)scene), PETSC_FALSE));
   for (PetscInt i = 0; i < scene->nbodies; ++i) PetscCall(AbutBodyCheck(scene->body[i]));
+  for (PetscInt i = 0; i < scene->neffects; ++i) PetscCall(AbutEffectCheck(scene->effect[i]));
   for (PetscInt i = 0; i < scene->npairs; ++i) PetscCall(AbutPairCheck(scene->pair[i]));
+  for (PetscInt i = 0; i < scene->nbodies; ++i)
+    if (scene->estimates[i]) PetscCall(AbutEstimatorCheck(scene->estimator, scene->body[i]));
   PetscCall(AbutInterfaceCheck(scene->iface));
   PetscCall(AbutSceneCheckLoop_Private(scene));
   PetscCall(AbutSceneRestart_Private(scene));
@@ -203,6 +206,7 @@ PetscErrorCode AbutSceneView(AbutScene scene, PetscViewer viewer)
   PetscCall(PetscViewerASCIIPushTab(viewer));
   PetscCall(AbutSceneViewTolerance_Private(scene, viewer));
   for (PetscInt i = 0; i < scene->nbodies; ++i) PetscCall(AbutBodyView(scene->body[i], viewer));
+  for (PetscInt i = 0; i < scene->neffects; ++i) PetscCall(AbutEffectView(scene->effect[i], viewer));
   for (PetscInt i = 0; i < scene->npairs; ++i) PetscCall(AbutPairView(scene->pair[i], viewer));
   if (scene->snes) PetscCall(SNESView(scene->snes, viewer));
   if (scene->interleave)
@@ -252,6 +256,7 @@ PetscErrorCode AbutSceneDestroy(AbutScene *scene)
     PetscCall(VecDestroy(&s->eta[i]));
     PetscCall(AbutBodyDestroy(&s->body[i]));
   }
+  for (PetscInt i = 0; i < s->neffects; ++i) PetscCall(AbutEffectDestroy(&s->effect[i]));
   for (PetscInt i = 0; i < s->nprobes; ++i) PetscCall(PetscFree(s->probe[i].name));
   PetscCall(PetscHeaderDestroy(scene));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -5,7 +5,8 @@
 #include <petscdt.h>
 #include <complex.h>
 
-/* Bodies whose displacement is known, and how far from it they are. Fields satisfy the equations of plane strain without body force. */
+/* Bodies whose displacement is known, and how far from it they are. Fields satisfy the equations of plane strain without body force,
+   except CkForced. */
 
 typedef struct CkField CkField;
 typedef struct {
@@ -71,6 +72,30 @@ static inline void CkHertzAbove(const CkField *field, const PetscReal x[2], Pets
   CkHertz(field, below, u, s);
   u[1] = -u[1];
   s[2] = -s[2];
+}
+
+/* u = (sin x cosh y, x y^2)/1000, which wants a body force */
+static inline void CkForced(const CkField *field, const PetscReal x[2], PetscReal u[2], PetscReal s[3])
+{
+  const PetscReal E = field->young, nu = field->poisson, mu = E / (2. * (1. + nu)), lambda = E * nu / ((1. + nu) * (1. - 2. * nu));
+  const PetscReal e11 = 1e-3 * cos(x[0]) * cosh(x[1]), e22 = 2e-3 * x[0] * x[1], g = 1e-3 * (sin(x[0]) * sinh(x[1]) + x[1] * x[1]);
+
+  u[0] = 1e-3 * sin(x[0]) * cosh(x[1]);
+  u[1] = 1e-3 * x[0] * x[1] * x[1];
+  s[0] = lambda * (e11 + e22) + 2. * mu * e11;
+  s[1] = lambda * (e11 + e22) + 2. * mu * e22;
+  s[2] = mu * g;
+}
+
+/* -div s = -mu (lap u) - (lambda + mu) grad div u; lap u = (0, 2x), div u = cos x cosh y + 2xy */
+static inline PetscErrorCode CkForceOfForced(const PetscReal x[2], PetscReal f[2], void *ctx)
+{
+  const CkField  *field = (const CkField *)ctx;
+  const PetscReal E = field->young, nu = field->poisson, mu = E / (2. * (1. + nu)), lambda = E * nu / ((1. + nu) * (1. - 2. * nu));
+
+  f[0] = -1e-3 * (lambda + mu) * (2. * x[1] - sin(x[0]) * cosh(x[1]));
+  f[1] = -1e-3 * (mu * 2. * x[0] + (lambda + mu) * (cos(x[0]) * sinh(x[1]) + 2. * x[0]));
+  return PETSC_SUCCESS;
 }
 
 static inline PetscErrorCode CkDisplacement(const PetscReal x[2], PetscReal *value, void *ctx)

@@ -55,6 +55,7 @@ static inline PetscReal AbutSegmentNormal_Private(AbutPair pair, const AbutSegme
 PETSC_INTERN PetscErrorCode AbutPairCheckFacing_Private(AbutPair);
 PETSC_INTERN PetscErrorCode AbutPairGetDistance_Private(AbutPair, PetscReal *);
 PETSC_INTERN PetscErrorCode AbutPairObstacleFromOptions_Private(AbutPair);
+PETSC_INTERN PetscErrorCode AbutPairCloseGap_Private(AbutPair, const PetscReal[2], PetscReal *);
 PETSC_INTERN PetscErrorCode AbutPairObstacleGap_Private(AbutPair, const PetscReal[2], const PetscReal[2], PetscReal *);
 /* project.c */
 PETSC_INTERN PetscErrorCode AbutPairProject_Private(AbutPair);

@@ -51,8 +51,9 @@ typedef enum {
 
 struct _p_AbutScene {
   PETSCHEADER(int);
-  PetscInt      nbodies, npairs, nprobes;
+  PetscInt      nbodies, npairs, nprobes, neffects;
   AbutBody      body[ABUT_MAX_NAMES];
+  AbutEffect    effect[ABUT_MAX_NAMES];
   AbutPair      pair[ABUT_MAX_NAMES];
   AbutProbe     probe[ABUT_MAX_NAMES];
   PetscBool     estimates[ABUT_MAX_NAMES]; /* bodies whose error is estimated, and adapted if there is an adaptor */
@@ -108,7 +109,7 @@ PETSC_INTERN PetscErrorCode AbutScenePrintCycle_Private(AbutScene, PetscInt);
 PETSC_INTERN PetscErrorCode AbutScenePrintEnd_Private(AbutScene);
 /* edges.c */
 PETSC_INTERN PetscErrorCode AbutSceneKeepEdges_Private(AbutScene);
-PETSC_INTERN PetscBool      AbutSideTouches_Private(const AbutMeshTopology *, PetscInt, const PetscReal[2]);
+PETSC_INTERN PetscErrorCode AbutSideTouches_Private(AbutMesh, PetscInt, const PetscReal[2], PetscBool *);
 PETSC_INTERN PetscErrorCode AbutSceneSettles_Private(AbutScene, PetscBool *);
 PETSC_INTERN PetscErrorCode AbutSceneAdaptBody_Private(AbutScene, AbutBody, const PetscBool[]);
 PETSC_INTERN PetscErrorCode AbutSceneFollows_Private(AbutScene, PetscBool *);
