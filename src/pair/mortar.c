@@ -76,11 +76,39 @@ static PetscErrorCode AbutPairDual_Private(PetscInt order, AbutDual A)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The same for bodies of revolution, whose integrals weigh the circumference: psi_i = D_i (M^-1 phi)_i with the weighted mass matrix M and D_i
+   the integral of phi_i, which is positive but on the axis from order 2 on, where it is 0 */
+static PetscErrorCode AbutPairDualAxial_Private(AbutPair pair, PetscInt e, AbutDual A)
+{
+  const PetscInt   p = pair->order[0], n = p + 1;
+  const PetscReal *s = pair->place[0] + p * e;
+  PetscReal        z[ABUT_ORDER_MAX + 2], w[ABUT_ORDER_MAX + 2], N[ABUT_SIDE_NODES_MAX], D[ABUT_SIDE_NODES_MAX] = {0.}, x[2], t, total = 0.;
+  PetscReal        M[ABUT_SIDE_NODES_MAX * ABUT_SIDE_NODES_MAX] = {0.}, inverse[ABUT_SIDE_NODES_MAX * ABUT_SIDE_NODES_MAX] = {0.};
+
+  PetscFunctionBegin;
+  PetscCall(PetscDTGaussQuadrature(p + 2, s[0], s[p], z, w));
+  for (PetscInt q = 0; q < p + 2; ++q) {
+    AbutPairPointAt_Private(pair, z[q], x);
+    PetscCall(AbutBodyGetThickness(pair->body[pair->which], x, &t));
+    PetscCall(AbutEvaluateLobatto(p, (2. * z[q] - s[0] - s[p]) / (s[p] - s[0]), N, NULL));
+    total += w[q] * t;
+    for (PetscInt i = 0; i < n; ++i) {
+      D[i] += w[q] * t * N[i];
+      for (PetscInt j = 0; j <= i; ++j) M[n * j + i - j] += w[q] * t * N[i] * N[j]; /* the lower band of AbutSolveBand() */
+    }
+  }
+  for (PetscInt i = 0; i < n; ++i) inverse[n * i + i] = 1.;
+  PetscCall(AbutSolveBand(n, p, M, n, inverse));
+  for (PetscInt i = 0; i < n; ++i)
+    for (PetscInt j = 0; j < n; ++j) A[i][j] = D[i] > 1e-12 * total ? D[i] * inverse[n * i + j] : 0.;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Integrals over one piece [from,to] of the elements e of the pressure side and k of the other */
 static PetscErrorCode AbutPairSegment_Private(AbutPair pair, PetscInt e, PetscInt k, AbutDual A, PetscReal from, PetscReal to)
 {
   const PetscInt n = pair->order[0] + PetscMax(pair->order[1], 0) + 2, first = pair->order[0] * e;
-  PetscReal      z[2 * ABUT_ORDER_MAX + 2], w[2 * ABUT_ORDER_MAX + 2], phi[2][ABUT_SIDE_NODES_MAX], at[2], f;
+  PetscReal      z[2 * ABUT_ORDER_MAX + 2], w[2 * ABUT_ORDER_MAX + 2], phi[2][ABUT_SIDE_NODES_MAX], at[2], x[2], f, thickness = 1.;
   AbutSegment   *g;
 
   PetscFunctionBegin;
@@ -97,10 +125,18 @@ static PetscErrorCode AbutPairSegment_Private(AbutPair pair, PetscInt e, PetscIn
     PetscCall(AbutPairFace_Private(pair, g->element, z[q], at, g->normal, &f));
     for (PetscInt side = 0; side < 2 && pair->order[side] > 0; ++side)
       PetscCall(AbutEvaluateLobatto(pair->order[side], at[side], phi[side], NULL));
+    if (pair->axial) {
+      AbutPairPointAt_Private(pair, z[q], x);
+      PetscCall(AbutBodyGetThickness(pair->body[pair->which], x, &thickness));
+    }
     for (PetscInt i = 0; i <= pair->order[0]; ++i) {
       PetscReal psi = 0.;
 
       for (PetscInt j = 0; j <= pair->order[0]; ++j) psi += w[q] * A[i][j] * phi[0][j];
+      if (pair->axial) {
+        pair->length[first + i] += psi;
+        psi *= thickness;
+      }
       pair->D[first + i] += psi;
       pair->F[first + i] += psi * f;
       for (PetscInt side = 0; side < 2; ++side)
@@ -170,7 +206,8 @@ static PetscErrorCode AbutPairElement_Private(AbutPair pair, PetscInt *k, PetscI
   PetscFunctionBegin;
   for (PetscInt i = 0; i <= p; ++i)
     if (fixed[i]) whole = PETSC_FALSE;
-  if (p == 1) {
+  if (pair->axial && whole) PetscCall(AbutPairDualAxial_Private(pair, e, A));
+  else if (p == 1 && !pair->axial) {
     const PetscReal hats[2][2] = {
       {(s[1] - from) / h, (s[1] - to) / h},
       {(from - s[0]) / h, (to - s[0]) / h}
@@ -190,6 +227,7 @@ static PetscErrorCode AbutPairElement_Private(AbutPair pair, PetscInt *k, PetscI
 PetscErrorCode AbutPairMortar_Private(AbutPair pair)
 {
   const AbutSide *own, *other;
+  AbutKinematics  kinematics;
   PetscInt        k;
 
   PetscFunctionBegin;
@@ -201,6 +239,10 @@ PetscErrorCode AbutPairMortar_Private(AbutPair pair)
   PetscCall(AbutPairProject_Private(pair));
   pair->components = pair->straight ? 1 : 2;
   PetscCall(PetscCalloc3(own->n, &pair->D, own->n, &pair->F, own->n, &pair->work));
+  PetscCall(AbutBodyGetKinematics(pair->body[0], &kinematics));
+  pair->axial  = (PetscBool)(kinematics == ABUT_AXISYMMETRIC);
+  pair->length = pair->D;
+  if (pair->axial) PetscCall(PetscCalloc1(own->n, &pair->length));
   pair->overlap[0] = other ? PetscMax(pair->place[1][other->n - 1], 0.) : 0.;
   pair->overlap[1] = other ? PetscMin(pair->place[1][0], pair->place[0][own->n - 1]) : pair->place[0][own->n - 1];
   k                = other ? (other->n - 1) / other->order - 1 : 0;
@@ -218,6 +260,7 @@ PetscErrorCode AbutPairMortarReset_Private(AbutPair pair)
   PetscFunctionBegin;
   PetscCall(AbutPairProjectReset_Private(pair));
   PetscCall(PetscFree(pair->segment));
+  if (pair->length != pair->D) PetscCall(PetscFree(pair->length));
   PetscCall(PetscFree3(pair->D, pair->F, pair->work));
   pair->nsegments = pair->room = 0;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -147,7 +147,7 @@ PetscErrorCode AbutPairGetPeaks(AbutPair pair, const PetscReal p[], PetscReal to
 
   PetscFunctionBegin;
   *n = 0;
-  for (PetscInt i = 0; i < m->n; ++i) contact += p[i] > 0. ? pair->D[i] : 0.;
+  for (PetscInt i = 0; i < m->n; ++i) contact += p[i] > 0. ? pair->length[i] : 0.;
   PetscCall(PetscMalloc1(m->n, &q));
   PetscCall(AbutPairGetReading_Private(pair, p, q));
   PetscCall(AbutPairGetLargest_Private(pair, q, &largest));

@@ -20,17 +20,20 @@ static PetscBool AbutPairCoversElement_Private(AbutPair pair, PetscInt e, PetscR
   return (PetscBool)(from > pair->overlap[0] - 1e-9 * *h && from + *h < pair->overlap[1] + 1e-9 * *h);
 }
 
-static PetscErrorCode AbutRecoveryAddElement_Private(AbutRecovery *r, PetscInt e, PetscReal h)
+static PetscErrorCode AbutRecoveryAddElement_Private(AbutPair pair, AbutRecovery *r, PetscInt e, PetscReal h)
 {
   const PetscInt n = r->order + 1, first = r->order * e;
-  PetscReal      N[ABUT_SIDE_NODES_MAX], z[ABUT_SIDE_NODES_MAX], w[ABUT_SIDE_NODES_MAX];
+  PetscReal      N[ABUT_SIDE_NODES_MAX], z[ABUT_SIDE_NODES_MAX + 1], w[ABUT_SIDE_NODES_MAX + 1], x[2], thickness;
+  const PetscInt points = pair->axial ? n + 1 : n;
 
   PetscFunctionBegin;
-  PetscCall(PetscDTGaussQuadrature(n, -1., 1., z, w));
-  for (PetscInt q = 0; q < n; ++q) {
+  PetscCall(PetscDTGaussQuadrature(points, -1., 1., z, w));
+  for (PetscInt q = 0; q < points; ++q) {
+    AbutPairPointAt_Private(pair, pair->place[0][first] + 0.5 * (1. + z[q]) * h, x);
+    PetscCall(AbutBodyGetThickness(pair->body[pair->which], x, &thickness));
     PetscCall(AbutEvaluateLobatto(r->order, z[q], N, NULL));
     for (PetscInt j = 0; j < n; ++j)
-      for (PetscInt i = j; i < n; ++i) r->M[n * (first + j) + i - j] += 0.5 * w[q] * h * N[i] * N[j];
+      for (PetscInt i = j; i < n; ++i) r->M[n * (first + j) + i - j] += 0.5 * w[q] * thickness * h * N[i] * N[j];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -42,7 +45,7 @@ static PetscErrorCode AbutRecoverySetUp_Private(AbutPair pair, const PetscReal p
   for (PetscInt e = 0; r->order * e + 1 < r->n; ++e) {
     PetscReal h;
 
-    if (AbutPairCoversElement_Private(pair, e, &h)) PetscCall(AbutRecoveryAddElement_Private(r, e, h));
+    if (AbutPairCoversElement_Private(pair, e, &h)) PetscCall(AbutRecoveryAddElement_Private(pair, r, e, h));
     else
       for (PetscInt i = 0; i <= r->order; ++i) r->known[r->order * e + i] = PETSC_TRUE;
   }

@@ -113,7 +113,7 @@ PetscErrorCode AbutPairGetState(AbutPair pair, const PetscReal u1[], const Petsc
     state->excess          = PetscMax(state->excess, g[i] - p[i] * pair->theta);
     if (p[i] > 0.) {
       ++state->active;
-      state->contact_length += pair->D[i];
+      state->contact_length += pair->length[i];
     }
   }
   PetscCall(AbutPairReadPressures_Private(pair, p, state));

@@ -11,10 +11,10 @@ PetscErrorCode AbutSceneWarnOfOverlap_Private(AbutScene scene)
     const char *name;
     AbutBody    body[2];
     PetscInt    side[2];
-    PetscBool   meant[2];
+    PetscBool   meant[2] = {PETSC_FALSE, PETSC_FALSE};
 
     PetscCall(AbutPairGetBodies(scene->pair[i], body, side));
-    for (PetscInt s = 0; s < 2; ++s) PetscCall(AbutBodyHasSideOffset(body[s], side[s], &meant[s]));
+    for (PetscInt s = 0; s < 2 && body[s]; ++s) PetscCall(AbutBodyHasSideOffset(body[s], side[s], &meant[s]));
     PetscCall(AbutPairGetOverlap(scene->pair[i], &depth, x));
     if (depth == 0. || meant[0] || meant[1]) continue;
     PetscCall(AbutPairGetName(scene->pair[i], &name));

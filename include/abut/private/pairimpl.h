@@ -41,6 +41,8 @@ struct _p_AbutPair {
   AbutSegment    *segment;
   PetscReal       overlap[2]; /* the part of the pressure side that the other one faces: distances from its first node */
   PetscReal      *D, *F;      /* [n[which]] integrals of psi_i and of psi_i times the gap; D = 0: the node carries no pressure */
+  PetscReal      *length;     /* [n[which]] what D is along the side: D itself, but for bodies of revolution */
+  PetscBool       axial;      /* they are: integrals weigh the circumference */
   PetscReal      *work;       /* [n[which]] */
   const AbutSide *nodes[2];
 };
