@@ -66,9 +66,9 @@ static PetscReal AbutPairFoot_Private(AbutPair pair, PetscInt e, const PetscReal
 static void AbutPairSee_Private(AbutPair pair)
 {
   const AbutSide  *m = pair->nodes[pair->which], *o = pair->nodes[!pair->which];
-  const PetscReal *s = pair->place[0];
-  const PetscInt   n = (m->n - 1) / m->order;
-  PetscInt         e = 0;
+  const PetscReal *s      = pair->place[0];
+  const PetscInt   n      = (m->n - 1) / m->order;
+  PetscInt         e      = 0;
   PetscBool        before = PETSC_TRUE;
 
   for (PetscInt i = o->n - 1; i >= 0; --i) {
