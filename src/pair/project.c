@@ -19,6 +19,20 @@ static PetscBool AbutPairIsStraight_Private(AbutPair pair)
                      PetscAbsReal(own->normal[0] + other->normal[0]) + PetscAbsReal(own->normal[1] + other->normal[1]) < 1e-9);
 }
 
+/* The direction at a vertex between the elements e-1 and e: the mean of their normals, that of the longer one, which is further from it,
+   counting less. On a circle it is the radius. */
+static void AbutPairVertexDirection_Private(AbutPair pair, PetscInt e, PetscReal d[2])
+{
+  const AbutSide  *m = pair->nodes[pair->which];
+  const PetscReal *s = pair->place[0] + m->order * e, *before = m->normal + 2 * (e - 1), *behind = m->normal + 2 * e;
+  const PetscReal  t = (s[0] - s[-m->order]) / (s[m->order] - s[-m->order]);
+  PetscReal        size;
+
+  for (PetscInt i = 0; i < 2; ++i) d[i] = (1. - t) * before[i] + t * behind[i];
+  size = PetscSqrtReal(d[0] * d[0] + d[1] * d[1]);
+  for (PetscInt i = 0; i < 2; ++i) d[i] /= size;
+}
+
 /* At an end of the side the direction is such that the normal of the last element is the mean of those at its ends: on an arc that ends in
    a plane of symmetry it lies in the plane */
 static PetscErrorCode AbutPairDirections_Private(AbutPair pair)
@@ -29,7 +43,7 @@ static PetscErrorCode AbutPairDirections_Private(AbutPair pair)
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(2 * (n + 1), &d));
-  for (PetscInt v = 1; v < n; ++v) PetscCall(AbutSideGetNodeNormal(m, m->order * v, d + 2 * v));
+  for (PetscInt v = 1; v < n; ++v) AbutPairVertexDirection_Private(pair, v, d + 2 * v);
   for (PetscInt end = 0; end < 2; ++end) {
     const PetscReal *normal = m->normal + 2 * (end ? n - 1 : 0), *next = n > 1 ? d + 2 * (end ? n - 1 : 1) : normal;
     const PetscReal  dot = normal[0] * next[0] + normal[1] * next[1];
@@ -107,11 +121,11 @@ PetscErrorCode AbutPairProject_Private(AbutPair pair)
     if (o) AbutPairPlaceOnChord_Private(m, o, pair->place[1]);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(AbutPairDirections_Private(pair));
   pair->place[0][0] = 0.;
   for (PetscInt i = 1; i < m->n; ++i)
     pair->place[0][i] = pair->place[0][i - 1] +
                         PetscSqrtReal(PetscSqr(m->x[2 * i] - m->x[2 * i - 2]) + PetscSqr(m->x[2 * i + 1] - m->x[2 * i - 1]));
+  PetscCall(AbutPairDirections_Private(pair));
   if (o) AbutPairSee_Private(pair);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
