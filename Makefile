@@ -12,13 +12,14 @@ endif
 
 # What config/setup.sh found: CC, PYTHON, PETSC, DEPS_CFLAGS, DEPS_LIBS, CHECK_CFLAGS, CHECK_LIBS, SLEPC_CFLAGS, SLEPC_LIBS. It rewrites the file
 # only when an answer changed, and GNU make then starts again with the new one. Only the goals below may install packages, and only as root on Debian.
+TESTING    = test test-long suite
 INSTALLING = run test test-long suite fuzz check asan memcheck setup
 NO_SETUP   = clean deps deps-dev format lint coverage
 ifneq ($(filter-out $(NO_SETUP),$(or $(MAKECMDGOALS),all)),)
 include $(B)/config.mk
 endif
 $(B)/config.mk: FORCE
-	@config/setup.sh $@ $(if $(filter $(INSTALLING),$(MAKECMDGOALS)),all install,build)
+	@config/setup.sh $@ $(if $(filter $(TESTING),$(MAKECMDGOALS)),test install,$(if $(filter $(INSTALLING),$(MAKECMDGOALS)),all install,build))
 
 # --- what is built ------------------------------------------------------------------------------------------------------------
 objects  = $(patsubst %.c,$(B)/obj/%.o,$(wildcard $(1)/*.c))

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Finds what Abut is built with, installs what is missing where it may, and writes the answers for the Makefile.
-#   config/setup.sh FILE.mk build|all [install]      config/setup.sh "" contribute install
-# build: compilers and libraries; all: also what the tests and pictures need; contribute: also format, lint and memory tools.
+#   config/setup.sh FILE.mk build|all|test [install]      config/setup.sh "" contribute install
+# build: compilers and libraries; all: also what the tests and pictures need; test: also what some tests can do without; contribute: also format, lint and memory tools.
 # Packages are installed only when asked to (install), as root, on a system with apt-get. Nothing here calls sudo.
 set -u
 config=$1 need=$2 install=${3-}
@@ -100,7 +100,7 @@ find_missing() {
   [ "$need" = build ] && return
   [ -n "$python" ] || want "Python 3 with Matplotlib and h5py" "python3 python3-matplotlib python3-h5py"
   pc --exists check || want "Check, the unit test framework" "check"
-  [ "$need" = all ] && return
+  [ "$need" = contribute ] || return
   has_fuzzer || want "clang with libFuzzer" "clang libclang-rt-dev"
   has valgrind || want "valgrind" "valgrind"
   has gcovr || want "gcovr" "gcovr"
@@ -149,6 +149,11 @@ if [ -z "$slepc_libs${PETSC_DIR-}" ] && may_install && apt-cache show libslepc-r
   echo "Installing libslepc-real-dev, which is optional"
   DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends libslepc-real-dev >/dev/null 2>&1
   find_slepc
+fi
+
+if [ "$need" = test ] && may_install && ! /usr/bin/python3 -c 'import vtkmodules' 2>/dev/null && apt-cache show python3-vtk9 >/dev/null 2>&1; then
+  echo "Installing python3-vtk9, which is optional"
+  DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends python3-vtk9 >/dev/null 2>&1
 fi
 
 if [ "$need" = contribute ]; then # the version .clang-format is written for; Debian 12 has 14, which cannot read it

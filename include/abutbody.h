@@ -46,6 +46,8 @@ PETSC_EXTERN PetscErrorCode AbutBodySetDisplacement(AbutBody, const char[], Pets
 PETSC_EXTERN PetscErrorCode AbutBodySetTraction(AbutBody, const char[], PetscInt, AbutPointFunction, void *);
 PETSC_EXTERN PetscErrorCode AbutBodySetContact(AbutBody, PetscInt);
 PETSC_EXTERN PetscErrorCode AbutBodyGetCondition(AbutBody, PetscInt, PetscInt, AbutConditionType *);
+PETSC_EXTERN PetscErrorCode AbutBodySetLoadFactor(AbutBody, PetscReal);
+PETSC_EXTERN PetscErrorCode AbutBodyGetLoadFactor(AbutBody, PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutBodySetFromOptions(AbutBody);
 
 /* What acts on a body beside its conditions. Each thing has the name of who brought it, for messages, and an event that is logged when it

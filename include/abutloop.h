@@ -41,6 +41,8 @@ PETSC_EXTERN PetscErrorCode AbutInterfaceSweep(AbutInterface, Vec, Vec);
 PETSC_EXTERN PetscErrorCode AbutInterfaceGetSweeps(AbutInterface, PetscInt *, PetscInt *);
 PETSC_EXTERN PetscErrorCode AbutInterfaceSweepBest(AbutInterface, Vec);
 PETSC_EXTERN PetscErrorCode AbutInterfaceKeepTrace(AbutInterface, Vec);
+PETSC_EXTERN PetscErrorCode AbutInterfaceForgetTrace(AbutInterface);
+PETSC_EXTERN PetscErrorCode AbutInterfaceKeepSlip(AbutInterface);
 PETSC_EXTERN PetscErrorCode AbutInterfaceTransferTrace(AbutInterface, Vec);
 PETSC_EXTERN PetscErrorCode AbutInterfaceArchive(AbutInterface, AbutArchive);
 PETSC_EXTERN PetscErrorCode AbutInterfaceArchiveTrace(AbutInterface, AbutArchive, Vec);

@@ -9,9 +9,9 @@
 
    Notes:
    `-record FILE` one `key value` line each; `-record_csv FILE` one line per cycle with the same names; `-output FILE.xdmf|FILE.vtu`
-   fields of every cycle (HDF5 behind the xdmf, a series of files listed in FILE.pvd for vtu); `-output_profile FILE.csv` traces and
-   pressures of every pair on the last mesh. Every file is written aside and renamed, so that a crash leaves the old one or the new
-   one, never half of one.
+   fields of every cycle, bodies and sides of pairs, a series in time (HDF5 behind the xdmf, a series of files listed in FILE.pvd for vtu);
+   `-output_profile FILE.csv` traces and pressures of every pair on the last mesh. Every file is written aside and renamed, so that a crash
+   leaves the old one or the new one, never half of one.
 
    Limits: all bodies are on the communicator of the recorder; stresses are those at the centres of the cells; a .vtu is text and is
    gathered on rank 0; hanging vertices on a cut between ranks are written once by each rank.
@@ -29,6 +29,8 @@ PETSC_EXTERN PetscErrorCode AbutRecorderSetInt(AbutRecorder, const char[], Petsc
 PETSC_EXTERN PetscErrorCode AbutRecorderSetString(AbutRecorder, const char[], const char[]);
 PETSC_EXTERN PetscErrorCode AbutRecorderEndCycle(AbutRecorder);
 PETSC_EXTERN PetscErrorCode AbutRecorderWantsFields(AbutRecorder, PetscBool *);
+PETSC_EXTERN PetscErrorCode AbutRecorderSetPairs(AbutRecorder, AbutInterface, PetscInt, AbutPair[]);
+PETSC_EXTERN PetscErrorCode AbutRecorderSetStep(AbutRecorder, PetscInt, PetscReal);
 PETSC_EXTERN PetscErrorCode AbutRecorderWriteFields(AbutRecorder, PetscInt, PetscInt, AbutBody[], Vec[]);
 PETSC_EXTERN PetscErrorCode AbutRecorderWriteProfile(AbutRecorder, AbutInterface, PetscInt, AbutPair[]);
 PETSC_EXTERN PetscErrorCode AbutRecorderWriteCycleProfile(AbutRecorder, PetscInt, AbutInterface, PetscInt, AbutPair[]);

@@ -21,6 +21,8 @@ CASES = {
     "V14": ("three layers, the middle one afloat", None),
     "V15": ("kernels of the boundary elements", None),
     "V16": ("estimators against true errors", None),
+    "V17": ("friction of a block: uniform stress, held by friction alone", None),
+    "V18": ("partial slip, Cattaneo and Mindlin", None),
     "H01": ("nearly incompressible", None),
     "H02": ("constants that no material has", None),
     "H03": ("contrast of the materials", None),

@@ -3,7 +3,8 @@
 #include <petscdt.h>
 
 /* A constant body force, an initial strain that is linear: the boundary elements judge what is left when a stress that balances the one is
-   taken off, with its tractions and its displacement, and the displacement that frees of the other. The nodal forces of the tractions are taken off those that hold the body, component by component. */
+   taken off, with its tractions and its displacement, and the displacement that frees of the other. The nodal forces of the tractions are
+   taken off those that hold the body, component by component. */
 
 /* Outward normal of boundary element e, times its length */
 static void GetNormal(const AbutBoundary *b, PetscInt e, PetscReal n[2])

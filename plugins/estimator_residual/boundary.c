@@ -71,9 +71,9 @@ static void ExtrapolateTraction(PetscInt order, PetscInt end, const PetscReal x[
   }
 }
 
-/* The contact pressure -p n at the nodes of element e from the nodal contact forces f: lumped, p = -f.n / D with D the integral of the
-   node's function. At a node between two elements in contact one force is that of both: D is the sum, as far as they have one normal;
-   across a corner of 90 degrees pressures do not mix. */
+/* The contact traction at the nodes of element e from the nodal contact forces f: lumped, the pressure -f.n / D and the tangential traction
+   f.tau / D with D the integral of the node's function. At a node between two elements in contact one force is that of both: D is the sum,
+   as far as they have one normal, and tau that of their mean; across a corner of 90 degrees tractions do not mix. */
 static PetscErrorCode SetContactTraction(AbutBody body, const AbutBoundary *b, PetscInt e, PetscInt previous, const PetscReal x[],
                                          const PetscReal w[], PetscReal traction[])
 {
@@ -84,7 +84,8 @@ static PetscErrorCode SetContactTraction(AbutBody body, const AbutBoundary *b, P
   for (PetscInt k = 0; k <= b->order; ++k) {
     const PetscInt   other = k == 0 ? previous : k == b->order ? b->next[e] : e;
     const PetscReal *f     = b->contact + 2 * AbutBoundaryNode(b, e, k);
-    PetscReal        D;
+    PetscReal        D, N[2] = {n[0] / length, n[1] / length}, size, shear;
+    PetscBool        corner = PETSC_FALSE;
 
     PetscCall(GetNodeThickness(body, b, e, k, &thickness));
     PetscCall(GetNodeThickness(body, b, e, b->order - k, &across));
@@ -94,12 +95,18 @@ static PetscErrorCode SetContactTraction(AbutBody body, const AbutBoundary *b, P
       continue;
     }
     if (other != e && IsContact(b, other)) {
-      (void)GetNormal(b, other, m);
+      size = GetNormal(b, other, m);
       PetscCall(GetNodeThickness(body, b, other, k ? 0 : b->order, &thickness));
       D += 0.5 * w[k] * PetscMax(0., (n[0] * m[0] + n[1] * m[1]) / length) * thickness;
+      if (n[0] * m[0] + n[1] * m[1] < 0.5 * length * size) corner = PETSC_TRUE;
+      for (PetscInt d = 0; d < 2; ++d) N[d] += m[d] / size;
     }
-    for (PetscInt d = 0; d < 2; ++d)
-      if (b->condition[2 * e + d] == ABUT_CONTACT) traction[2 * k + d] = (f[0] * n[0] + f[1] * n[1]) / D * n[d] / PetscSqr(length);
+    size  = PetscSqrtReal(PetscSqr(N[0]) + PetscSqr(N[1]));
+    shear = corner ? 0. : (f[1] * N[0] - f[0] * N[1]) / size; /* a force of both sides of a corner is not to be told apart */
+    for (PetscInt d = 0; d < 2; ++d) {
+      if (b->condition[2 * e + d] != ABUT_CONTACT) continue;
+      traction[2 * k + d] = (f[0] * n[0] + f[1] * n[1]) / D * n[d] / PetscSqr(length) + shear / D * (d ? n[0] : -n[1]) / length;
+    }
   }
   if (axis >= 0) ExtrapolateTraction(b->order, axis, x, traction);
   PetscFunctionReturn(PETSC_SUCCESS);

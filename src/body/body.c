@@ -53,66 +53,12 @@ PetscErrorCode AbutBodyCreate(MPI_Comm comm, const char name[], AbutBody *body)
   PetscCall(PetscObjectSetName((PetscObject)*body, name));
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", name));
   PetscCall(PetscObjectSetOptionsPrefix((PetscObject)*body, prefix));
+  (*body)->factor     = 1.;
   (*body)->generation = -1;
   (*body)->cell       = &AbutCellOps_Plane;
   PetscCall(AbutMeshCreate(comm, &(*body)->mesh));
   PetscCall(PetscObjectSetOptionsPrefix((PetscObject)(*body)->mesh, prefix));
   PetscCall(AbutBodyCreateSolver_Private(*body));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-   AbutBodySetMaterial - Sets the elastic constants, eq. (2) of the paper
-
-   Logically Collective
-
-   Input Parameters:
-+  body    - the body
-.  young   - Young's modulus, > 0, stress
--  poisson - Poisson's ratio, -1 < nu < 0.5
-
-   Level: beginner
-
-.seealso: `AbutBodySetFromOptions()`, `AbutBodyGetMaterial()`
-@*/
-PetscErrorCode AbutBodySetMaterial(AbutBody body, PetscReal young, PetscReal poisson)
-{
-  MPI_Comm    comm = PetscObjectComm((PetscObject)body);
-  const char *name = ((PetscObject)body)->name;
-
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, ABUTBODY_CLASSID, 1);
-  AbutCheckInput(young > 0., comm, "%s_material_young: %g is not a modulus; give a positive number, for example 2.1e5", name,
-                 (double)young);
-  AbutCheckInput(poisson > -1. && poisson < 0.5, comm, "%s_material_poisson: %g; plane strain needs -1 < nu < 0.5, for example 0.3", name,
-                 (double)poisson);
-  body->young   = young;
-  body->poisson = poisson;
-  PetscCall(AbutBodySetLame_Private(body));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-   AbutBodyGetMaterial - The elastic constants
-
-   Not Collective
-
-   Input Parameter:
-.  body - the body
-
-   Output Parameters:
-+  young   - Young's modulus, stress
--  poisson - Poisson's ratio
-
-   Level: beginner
-
-.seealso: `AbutBodySetMaterial()`, `AbutBodyGetPlaneMaterial()`
-@*/
-PetscErrorCode AbutBodyGetMaterial(AbutBody body, PetscReal *young, PetscReal *poisson)
-{
-  PetscFunctionBegin;
-  *young   = body->young;
-  *poisson = body->poisson;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -194,8 +140,7 @@ PetscErrorCode AbutBodySetUp(AbutBody body)
   PetscCall(VecDuplicate(body->load, &body->rhs));
   PetscCall(AbutBodyBoundarySetUp_Private(body));
   PetscCall(AbutBodyConditionsSetUp_Private(body));
-  PetscCall(AbutBodyHookForces_Private(body));
-  if (body->initial) PetscCall(AbutBodyInitialSetUp_Private(body));
+  PetscCall(AbutBodyLoadsSetUp_Private(body));
   PetscCall(AbutBodyAssemble_Private(body));
   PetscCall(AbutBodyModesSetUp_Private(body));
   PetscCall(AbutBodyChooseSolver_Private(body, 2 * t->nglobal, PETSC_FALSE));

@@ -338,6 +338,7 @@ PetscErrorCode AbutBodyGetBoundary(AbutBody body, AbutBoundary **boundary)
       b->condition[2 * i + d] = body->condition[b->side[i]][d].type;
       PetscCall(AbutBoundaryProjectTraction_Private(body, b, i, d));
     }
+  for (PetscInt k = 0; k < 2 * (b->order + 1) * n; ++k) b->traction[k] *= body->factor;
   PetscCall(AbutBodyGatherBoundary_Private(body, body->u, &value));
   PetscCall(PetscArraycpy(b->u, value, 2 * nodes));
   PetscCall(AbutBodyUngatherBoundary_Private(body, &value));

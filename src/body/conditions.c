@@ -199,6 +199,7 @@ static PetscErrorCode AbutBodyLoad_Private(AbutBody body, const AbutMeshTopology
   PetscReal           m[ABUT_SIDE_NODES_MAX];
 
   PetscFunctionBegin;
+  PetscCall(VecZeroEntries(body->load));
   for (PetscInt i = 0; i < b->n; ++i)
     for (PetscInt d = 0; d < 2; ++d) {
       if (!AbutBodyHasTraction_Private(body, b->side[i], d)) continue;
@@ -268,7 +269,7 @@ PetscErrorCode AbutBodyConditionsSetUp_Private(AbutBody body)
   PetscCall(ISCreateGeneral(PetscObjectComm((PetscObject)body), n, row, PETSC_COPY_VALUES, &body->constrained));
   PetscCall(VecCreateMPI(PetscObjectComm((PetscObject)body), n, PETSC_DETERMINE, &body->prescribed));
   PetscCall(VecGetArrayWrite(body->prescribed, &p));
-  for (PetscInt i = 0; i < n; ++i) p[i] = value[i];
+  for (PetscInt i = 0; i < n; ++i) p[i] = body->factor * value[i];
   PetscCall(VecRestoreArrayWrite(body->prescribed, &p));
   PetscCall(PetscFree4(row, value, of, is));
   PetscCall(AbutBodyLoad_Private(body, t));
@@ -392,6 +393,6 @@ PetscErrorCode AbutBodyGetSupportDisplacement(AbutBody body, const PetscReal x[2
   PetscCall(AbutMeshGetBox(body->mesh, lower, upper));
   foot[d] = far % 2 ? upper[d] : lower[d];
   PetscCall(AbutExpressionEvaluate(body->condition[far][d].value, foot, value));
-  *value *= normal[d];
+  *value *= body->factor * normal[d];
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -126,7 +126,7 @@ PetscErrorCode AbutBodyGetForce(AbutBody body, const PetscReal x[2], PetscReal f
 
     if (h->type != ABUT_HOOK_FORCE) continue;
     PetscCall((*h->call.force)(x, more, h->ctx));
-    for (PetscInt d = 0; d < 2; ++d) force[d] += more[d];
+    for (PetscInt d = 0; d < 2; ++d) force[d] += body->factor * more[d];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

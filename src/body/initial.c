@@ -31,6 +31,7 @@ PetscErrorCode AbutBodyGetInitialStrain(AbutBody body, const PetscReal x[2], Pet
     for (PetscInt i = 0; i < 4; ++i) eps[i] += one[i];
   }
   if (body->kinematics == ABUT_PLANE_STRESS) eps[3] = 0.;
+  for (PetscInt i = 0; i < 4; ++i) eps[i] *= body->factor;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -143,6 +144,7 @@ PetscErrorCode AbutBodyInitialSetUp_Private(AbutBody body)
   PetscFunctionBegin;
   PetscCall(AbutBodyLogInitial_Private(body, PETSC_TRUE));
   PetscCall(AbutMeshGetTopology(body->mesh, &t));
+  PetscCall(VecDestroy(&body->initialload)); /* of another load factor */
   PetscCall(AbutBodyCreateVec(body, &body->initialload));
   PetscCall(AbutInitialRuleCreate_Private(body->mesh, &rule));
   for (PetscInt c = 0; c < t->ncells; ++c) {

@@ -1,8 +1,63 @@
 #include <abut/private/bodyimpl.h> /*I "abutbody.h" I*/
 
-/* What the two coordinates of a body are, and what that makes of its material and its measures */
+/* The material of a body, what its two coordinates are, and what that makes of its material and its measures */
 
 const char *const AbutKinematicsNames[] = {"plane strain", "plane stress", "axial symmetry", "AbutKinematics", "ABUT_", NULL};
+
+/*@
+   AbutBodySetMaterial - Sets the elastic constants, eq. (2) of the paper
+
+   Logically Collective
+
+   Input Parameters:
++  body    - the body
+.  young   - Young's modulus, > 0, stress
+-  poisson - Poisson's ratio, -1 < nu < 0.5
+
+   Level: beginner
+
+.seealso: `AbutBodySetFromOptions()`, `AbutBodyGetMaterial()`
+@*/
+PetscErrorCode AbutBodySetMaterial(AbutBody body, PetscReal young, PetscReal poisson)
+{
+  MPI_Comm    comm = PetscObjectComm((PetscObject)body);
+  const char *name = ((PetscObject)body)->name;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, ABUTBODY_CLASSID, 1);
+  AbutCheckInput(young > 0., comm, "%s_material_young: %g is not a modulus; give a positive number, for example 2.1e5", name,
+                 (double)young);
+  AbutCheckInput(poisson > -1. && poisson < 0.5, comm, "%s_material_poisson: %g; plane strain needs -1 < nu < 0.5, for example 0.3", name,
+                 (double)poisson);
+  body->young   = young;
+  body->poisson = poisson;
+  PetscCall(AbutBodySetLame_Private(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutBodyGetMaterial - The elastic constants
+
+   Not Collective
+
+   Input Parameter:
+.  body - the body
+
+   Output Parameters:
++  young   - Young's modulus, stress
+-  poisson - Poisson's ratio
+
+   Level: beginner
+
+.seealso: `AbutBodySetMaterial()`, `AbutBodyGetPlaneMaterial()`
+@*/
+PetscErrorCode AbutBodyGetMaterial(AbutBody body, PetscReal *young, PetscReal *poisson)
+{
+  PetscFunctionBegin;
+  *young   = body->young;
+  *poisson = body->poisson;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 /*@
    AbutBodySetKinematics - What the two coordinates of a body are

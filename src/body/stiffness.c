@@ -188,8 +188,7 @@ PetscErrorCode AbutBodyAssemble_Private(AbutBody body)
   PetscCall(ISCreateStride(PetscObjectComm((PetscObject)body), 2 * t->nowned, 2 * t->firstowned, 1, &columns));
   PetscCall(MatCreateSubMatrix(body->A, body->constrained, columns, MAT_INITIAL_MATRIX, &body->Ac));
   PetscCall(ISDestroy(&columns));
-  PetscCall(MatMultTranspose(body->Ac, body->prescribed, body->lift));
-  PetscCall(VecScale(body->lift, -1.));
+  PetscCall(AbutBodyLift_Private(body));
   PetscCall(MatZeroRowsColumnsIS(body->A, body->constrained, body->mu, NULL, NULL));
   PetscCall(PetscLogEventEnd(ABUTBODY_Assemble, body, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);

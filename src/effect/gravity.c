@@ -36,11 +36,14 @@ static PetscErrorCode AbutGravityForce_Private(PETSC_UNUSED const PetscReal x[2]
 static PetscErrorCode AbutEffectSetFromOptions_Gravity(AbutEffect effect, AbutOptionItems PetscOptionsObject)
 {
   AbutEffect_Gravity *g;
+  PetscBool           given;
 
   PetscFunctionBegin;
   PetscCall(AbutEffectGetData(effect, &g));
-  PetscCall(AbutOptionsReal(PetscOptionsObject, "-effect_density", "Mass per volume", &g->density, NULL));
-  PetscCall(AbutOptionsReals(PetscOptionsObject, "-effect_acceleration", "Acceleration", 2, g->acceleration, NULL));
+  PetscCall(AbutOptionsReal(PetscOptionsObject, "-effect_density", "Mass per volume", &g->density, &given));
+  PetscCall(AbutOptionsReals(PetscOptionsObject, "-effect_acceleration", "a1,a2", 2, g->acceleration, NULL));
+  AbutCheckInput(given, PetscObjectComm((PetscObject)effect), "%s_effect_density: missing; give the mass per volume, for example 7850",
+                 ((PetscObject)effect)->name);
   AbutCheckInput(g->density > 0., PetscObjectComm((PetscObject)effect),
                  "%s_effect_density: %g is no mass per volume; give a positive number, for example 7850", ((PetscObject)effect)->name,
                  (double)g->density);

@@ -49,8 +49,8 @@ static PetscErrorCode AbutEffectFindBodies_Private(AbutEffect effect, const char
 -  bodies  - [nbodies] the bodies, which have read their keys
 
    Options Database Keys:
-+  -NAME_effect_type <type>    - what it is: `gravity`, `force`, `pressure`, `spring`, `overlap`, `thermal`, `plane_stress`, `axisymmetric`, or
-                                 that of a plugin
++  -NAME_effect_type <type>    - what it is: `gravity`, `force`, `pressure`, `spring`, `overlap`, `thermal`,
+                                 `plane_stress`, `axisymmetric`, or that of a plugin
 .  -NAME_effect_bodies <names> - what it acts on, all bodies by default; a type with a side wants one body
 -  -NAME_effect_*              - keys of the type
 

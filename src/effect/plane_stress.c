@@ -6,8 +6,8 @@
    Level: beginner
 
    Notes:
-   It has no keys but `-NAME_effect_bodies`. In a pair of a sheet and a body in plane strain each has the thickness 1. In the log it is
-   "AbutPlane_stress", with nothing in it.
+   It has no keys but `-NAME_effect_bodies`. In a pair of a sheet and a body in plane strain each has the thickness 1. It
+   logs nothing.
 
    Limits: sheets of one thickness that do not buckle.
 

@@ -49,7 +49,7 @@ static PetscErrorCode AbutInterfaceContactErrors_Private(AbutInterface f, PetscR
     for (PetscInt i = 0; i < model->n; ++i) e[i] -= d[i];
     *penalty = ABUT_SAFETY * PetscSqrtReal(AbutContactModelEnergy_Private(model, NULL, e));
     for (PetscInt i = 0; i < f->npairs; ++i)
-      for (PetscInt c = model->first[i]; c < model->first[i + 1]; ++c) force[i] += ABUT_SAFETY * e[c];
+      for (PetscInt c = model->first[i]; c < model->first[i] + model->normals[i]; ++c) force[i] += ABUT_SAFETY * e[c];
   }
   PetscCall(PetscFree4(F, d, e, exact));
   PetscFunctionReturn(PETSC_SUCCESS);

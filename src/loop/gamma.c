@@ -102,6 +102,9 @@ PetscErrorCode AbutInterfaceSetFromOptions(AbutInterface iface)
    computed one is the right one. It takes some ten solves of every body on each mesh, which `AbutInterfaceGetSweeps()` counts as start, and
    is kept until the meshes change. With bodies that bend easily it may be so large that no relaxation is of use.
 
+   With friction H 2(1+nu)/E, what a layer gives under tangential tractions, takes the place of H(1-nu^2)/E. Bodies whose far sides are free
+   along them give way more.
+
    Limits: theta > 0; every body is held by itself.
 
 .seealso: `AbutInterfaceSetSpectrum()`, `AbutInterfaceGetGamma()`, `AbutPairGetCompliance()`
@@ -117,8 +120,11 @@ PetscErrorCode AbutInterfaceGetSpectrum(AbutInterface iface, PetscReal *least, P
   }
   for (PetscInt i = 0; i < iface->npairs; ++i) {
     PetscReal c[2], theta;
+    PetscBool friction;
 
-    PetscCall(AbutPairGetCompliance(iface->pair[i], c));
+    PetscCall(AbutPairGetFriction(iface->pair[i], &friction, NULL));
+    if (friction) PetscCall(AbutPairGetShearCompliance(iface->pair[i], c));
+    else PetscCall(AbutPairGetCompliance(iface->pair[i], c));
     PetscCall(AbutPairGetTheta(iface->pair[i], &theta));
     *largest = PetscMax(*largest, 1. + (c[0] + c[1]) / theta);
   }

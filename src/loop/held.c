@@ -1,14 +1,27 @@
 #include <abut/private/loopimpl.h> /*I "abutloop.h" I*/
 
-/* Is every rigid motion that the prescribed displacements leave free resisted by contact? Contact has no friction, so it resists a motion
-   of the bodies only by its normal jump, at the points of AbutPairGetSharedPoints(). */
+/* Is every rigid motion that the prescribed displacements leave free resisted by contact? Contact resists a motion of the bodies by its
+   normal jump, at the points of AbutPairGetSharedPoints(); where it has friction, by the tangential jump, too. */
 
-/* One row per shared point of a pair, one column per free motion of a body: the normal displacements of both sides, added */
+/* One row per shared point of a pair and direction, one column per free motion of a body: the displacements of both sides along it,
+   added */
 typedef struct {
   PetscInt   rows, columns;
   PetscInt  *body, *mode; /* [columns] */
   PetscReal *M;           /* [rows*columns] */
 } AbutJumps;
+
+/* The directions in which a pair resists: the normal, and with friction the tangent */
+static PetscErrorCode AbutPairGetDirections_Private(AbutPair pair, PetscInt *n)
+{
+  PetscBool friction;
+  PetscReal mu;
+
+  PetscFunctionBegin;
+  PetscCall(AbutPairGetFriction(pair, &friction, &mu));
+  *n = mu > 0. ? 2 : 1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 static PetscErrorCode AbutJumpsCreate_Private(AbutInterface f, AbutJumps *j)
 {
@@ -17,11 +30,12 @@ static PetscErrorCode AbutJumpsCreate_Private(AbutInterface f, AbutJumps *j)
   j->columns = 0;
   for (PetscInt i = 0; i < f->npairs; ++i) {
     PetscReal *x;
-    PetscInt   n;
+    PetscInt   n, directions;
 
     PetscCall(AbutPairGetSharedPoints(f->pair[i], &n, &x));
+    PetscCall(AbutPairGetDirections_Private(f->pair[i], &directions));
     PetscCall(PetscFree(x));
-    j->rows += n;
+    j->rows += directions * n;
   }
   for (PetscInt pass = 0; pass < 2; ++pass) {
     if (pass) PetscCall(PetscMalloc2(j->columns, &j->body, j->columns, &j->mode));
@@ -71,9 +85,10 @@ static PetscErrorCode AbutJumpsFill_Private(AbutInterface f, AbutJumps *j)
   PetscFunctionBegin;
   for (PetscInt i = 0; i < f->npairs; ++i) {
     PetscReal *x;
-    PetscInt   n;
+    PetscInt   n, directions;
 
     PetscCall(AbutPairGetSharedPoints(f->pair[i], &n, &x));
+    PetscCall(AbutPairGetDirections_Private(f->pair[i], &directions));
     for (PetscInt c = 0; c < j->columns; ++c)
       for (PetscInt s = 0; s < 2; ++s) {
         PetscReal corner[2][2], scale, u[2];
@@ -81,15 +96,18 @@ static PetscErrorCode AbutJumpsFill_Private(AbutInterface f, AbutJumps *j)
 
         if (j->body[c] != f->bodyof[2 * i + s]) continue;
         PetscCall(AbutMotionAtCorners_Private(f->body[j->body[c]], j->mode[c], corner, &turn, &scale));
-        for (PetscInt k = 0; k < n; ++k) {
-          const PetscReal *normal = x + 6 * k + 4;
+        for (PetscInt k = 0; k < directions * n; ++k) {
+          const PetscReal *at = x + 6 * (k % n), *normal = at + 4, along = k < n ? 0. : 1.;
 
-          PetscCall(AbutBodyGetFreeMotion(f->body[j->body[c]], j->mode[c], x + 6 * k + 2 * s, u));
-          j->M[(row + k) * j->columns + c] += (s ? -1. : 1.) * (u[0] * normal[0] + u[1] * normal[1]) / scale;
+          PetscCall(AbutBodyGetFreeMotion(f->body[j->body[c]], j->mode[c], at + 2 * s, u));
+          j->M[(row + k) * j->columns + c] += (s ? -1. : 1.) *
+                                              ((1. - along) * (u[0] * normal[0] + u[1] * normal[1]) +
+                                               along * (u[1] * normal[0] - u[0] * normal[1])) /
+                                              scale;
         }
       }
     PetscCall(PetscFree(x));
-    row += n;
+    row += directions * n;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -204,7 +222,8 @@ static PetscErrorCode AbutInterfaceComplain_Private(AbutInterface f, const AbutJ
    Level: developer
 
    Note:
-   What can hold a body may still fail to: contact only pushes, and may be open. That is found by solving.
+   What can hold a body may still fail to: contact only pushes, and may be open; friction holds up to mu times the force. That is found by
+   solving.
 
 .seealso: `AbutBodyGetFreeModeCount()`, `AbutBodyCheck()`, `AbutPairCheck()`
 @*/

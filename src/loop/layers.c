@@ -103,7 +103,7 @@ static PetscErrorCode AbutModesCreate_Private(AbutInterface f, AbutContactModel 
   PetscCall(AbutBodyGetSide(bodies[t % 2], sides[t % 2], &side));
   PetscCall(AbutModesOfSide_Private(side, m, &shape));
   m->first = first;
-  m->rows  = model->first[pair + 1] - first;
+  m->rows  = model->normals[pair];
   PetscCall(AbutPairGetPressureNodes(f->pair[pair], &which, &n, &x, &D));
   PetscCall(PetscMalloc1(m->rows * m->n, &m->W));
   PetscCall(PetscCalloc2(f->offset[2 * pair + 2] - f->offset[2 * pair], &trace, n, &g));
@@ -204,6 +204,39 @@ static PetscErrorCode AbutLayerSides_Private(AbutInterface f, AbutContactModel m
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The same along side t for tangential tractions t cos(xi x): k/xi tanh, which is H 2(1+nu)/E for long waves, where the far side is held
+   along it, and k/xi coth, a rod, where it is not; the half plane for short ones. On straight sides slips have the modes that penetrations
+   have. Nothing of how tractions and pressures act on each other: that the sweeps teach. */
+static PetscErrorCode AbutLayerShear_Private(AbutInterface f, AbutContactModel model, PetscInt t, const AbutModes *side)
+{
+  AbutConditionType condition;
+  AbutBody          bodies[2];
+  AbutMesh          mesh;
+  AbutModes         m = *side;
+  PetscInt          sides[2], far;
+  PetscReal         ends[4], normal[2], young, poisson, height, *w;
+
+  PetscFunctionBegin;
+  PetscCall(AbutPairGetBodies(f->pair[t / 2], bodies, sides));
+  PetscCall(AbutBodyGetMesh(bodies[t % 2], &mesh));
+  PetscCall(AbutMeshGetSideEnds(mesh, sides[t % 2], ends, normal));
+  PetscCall(AbutBodyGetFarSide(bodies[t % 2], normal, &far, &condition));
+  PetscCall(AbutBodyGetCondition(bodies[t % 2], far, !(far / 2), &condition));
+  PetscCall(AbutBodyGetHeight(bodies[t % 2], normal, &height));
+  PetscCall(AbutBodyGetMaterial(bodies[t % 2], &young, &poisson));
+  PetscCall(PetscMalloc1(m.n, &w));
+  for (PetscInt k = 0; k < m.n; ++k) {
+    const PetscReal compliance = 2. * (1. - poisson * poisson) / young, xi = PetscMax(m.xi[k], 0.5 * PETSC_PI / m.length);
+
+    if (condition == ABUT_DISPLACEMENT) w[k] = compliance / xi * PetscTanhReal(xi * height / (1. - poisson));
+    else w[k] = compliance / xi / PetscTanhReal(2. * xi * height);
+  }
+  m.first += m.rows;
+  PetscCall(AbutLayerAdd_Private(model, &m, &m, w));
+  PetscCall(PetscFree(w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Fills S with the layers' compliance; some n^3 operations */
 PetscErrorCode AbutInterfaceLayers_Private(AbutInterface f, AbutContactModel model)
 {
@@ -216,6 +249,9 @@ PetscErrorCode AbutInterfaceLayers_Private(AbutInterface f, AbutContactModel mod
   for (PetscInt t = 0; t < 2 * f->npairs; ++t)
     for (PetscInt r = 0; r < 2 * f->npairs; ++r)
       if (f->bodyof[t] >= 0 && f->bodyof[t] == f->bodyof[r]) PetscCall(AbutLayerSides_Private(f, model, t, r, m));
+  for (PetscInt t = 0; t < 2 * f->npairs; ++t)
+    if (f->bodyof[t] >= 0 && model->first[t / 2 + 1] - model->first[t / 2] > model->normals[t / 2])
+      PetscCall(AbutLayerShear_Private(f, model, t, &m[t]));
   for (PetscInt t = 0; t < 2 * f->npairs; ++t) PetscCall(AbutModesDestroy_Private(&m[t]));
   PetscCall(PetscFree(m));
   PetscFunctionReturn(PETSC_SUCCESS);

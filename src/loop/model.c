@@ -2,11 +2,11 @@
 
 /* The contact model of an interface: its nodes, the layers' compliance, the free motions of its bodies; and how it learns from sweeps */
 
-/* Contact nodes of all pairs, one after the other: those that carry a pressure */
+/* Contact nodes of all pairs, one after the other: those that carry a pressure. With friction each is there twice. */
 static PetscErrorCode AbutContactModelNodes_Private(AbutInterface f, AbutContactModel model)
 {
   PetscFunctionBegin;
-  PetscCall(PetscCalloc1(f->npairs + 1, &model->first));
+  PetscCall(PetscCalloc2(f->npairs + 1, &model->first, f->npairs, &model->normals));
   for (PetscInt pass = 0; pass < 2; ++pass) {
     PetscInt c = 0;
 
@@ -14,18 +14,21 @@ static PetscErrorCode AbutContactModelNodes_Private(AbutInterface f, AbutContact
       PetscInt         which, n;
       const PetscReal *x, *D;
       PetscReal        theta;
+      PetscBool        friction;
 
       PetscCall(AbutPairGetPressureNodes(f->pair[i], &which, &n, &x, &D));
       PetscCall(AbutPairGetTheta(f->pair[i], &theta));
-      for (PetscInt k = 0; k < n; ++k) {
-        if (D[k] <= 0.) continue;
+      PetscCall(AbutPairGetFriction(f->pair[i], &friction, NULL));
+      for (PetscInt k = 0; k < (friction ? 2 : 1) * n; ++k) {
+        if (D[k % n] <= 0.) continue;
         if (pass) {
           model->node[c] = k;
-          model->D[c]    = D[k];
-          model->soft[c] = theta / D[k];
+          model->D[c]    = D[k % n];
+          model->soft[c] = theta / D[k % n];
         }
         ++c;
       }
+      model->normals[i]   = (c - model->first[i]) / (friction ? 2 : 1);
       model->first[i + 1] = c;
     }
     model->n = c;
@@ -79,7 +82,7 @@ static PetscErrorCode AbutContactModelMotions_Private(AbutInterface f, AbutConta
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode AbutContactModelOpen_Private(AbutInterface f, AbutContactModel model)
+PetscErrorCode AbutContactModelOpen_Private(AbutInterface f, AbutContactModel model)
 {
   PetscReal *trace;
 
@@ -99,6 +102,7 @@ PetscErrorCode AbutInterfaceGetModel_Private(AbutInterface f, AbutContactModel *
   if (!f->model) {
     PetscCall(PetscNew(&f->model));
     PetscCall(AbutContactModelNodes_Private(f, f->model));
+    PetscCall(AbutContactModelFriction_Private(f, f->model));
     PetscCall(AbutContactModelOpen_Private(f, f->model));
     AbutCheckInput(f->model->n <= ABUT_CONTACT_NODES, PetscObjectComm((PetscObject)f),
                    "scene_pairs: %" PetscInt_FMT
@@ -117,7 +121,8 @@ PetscErrorCode AbutContactModelDestroy_Private(AbutContactModel *model)
 {
   PetscFunctionBegin;
   if (!*model) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree((*model)->first));
+  PetscCall(PetscFree2((*model)->first, (*model)->normals));
+  PetscCall(AbutModelFrictionDestroy_Private(&(*model)->friction));
   PetscCall(PetscFree6((*model)->node, (*model)->D, (*model)->soft, (*model)->open, (*model)->b, (*model)->active));
   PetscCall(PetscFree((*model)->S));
   PetscCall(PetscFree4((*model)->G, (*model)->e, (*model)->owner, (*model)->mode));
@@ -138,11 +143,15 @@ PetscErrorCode AbutInterfacePenetration_Private(AbutInterface f, AbutContactMode
   for (PetscInt i = 0; i < f->npairs; ++i) {
     PetscInt         which, n;
     const PetscReal *x, *D;
+    const PetscReal *u1 = trace + f->offset[2 * i], *u2 = trace + f->offset[2 * i + 1];
     PetscReal       *nodal;
+    PetscBool        friction;
 
     PetscCall(AbutPairGetPressureNodes(f->pair[i], &which, &n, &x, &D));
-    PetscCall(PetscMalloc1(n, &nodal));
-    PetscCall(AbutPairComputePenetration(f->pair[i], trace + f->offset[2 * i], trace + f->offset[2 * i + 1], nodal));
+    PetscCall(AbutPairGetFriction(f->pair[i], &friction, NULL));
+    PetscCall(PetscMalloc1((friction ? 2 : 1) * n, &nodal));
+    PetscCall(AbutPairComputePenetration(f->pair[i], u1, u2, nodal));
+    if (friction) PetscCall(AbutPairComputeSlip(f->pair[i], u1, u2, nodal + n));
     for (PetscInt c = model->first[i]; c < model->first[i + 1]; ++c) g[c] = nodal[model->node[c]];
     PetscCall(PetscFree(nodal));
   }

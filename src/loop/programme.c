@@ -188,6 +188,10 @@ PetscErrorCode AbutContactModelSolve_Private(AbutContactModel model, const Petsc
   PetscInt       least = n + 1, patience = ABUT_PATIENCE, wrong = 1, rescues = 0;
 
   PetscFunctionBegin;
+  if (model->friction) {
+    PetscCall(AbutContactModelSolveFriction_Private(model, r, F, d, a, loose, solved));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(PetscMalloc2(n, &zone, n, &g));
   for (PetscInt i = 0; i < n; ++i) {
     zone[i] = (PetscBool)(F[i] > 0.);

@@ -97,14 +97,17 @@ static PetscErrorCode AbutInterfaceResiduals_Private(AbutInterface f)
   for (PetscInt i = 0; i < f->npairs; ++i) {
     const PetscReal *x, *D;
     PetscReal       *p;
-    PetscInt         which, n;
+    PetscInt         which, n, values;
+    PetscBool        friction;
 
     PetscCall(AbutPairGetPressureNodes(f->pair[i], &which, &n, &x, &D));
-    PetscCall(PetscMalloc1(n, &p));
+    PetscCall(AbutPairGetFriction(f->pair[i], &friction, NULL));
+    values = (friction ? 2 : 1) * n;
+    PetscCall(PetscMalloc1(values, &p));
     PetscCall(AbutPairComputePressure(f->pair[i], f->g + f->offset[2 * i], f->g + f->offset[2 * i + 1], p));
-    for (PetscInt k = 0; k < n; ++k) {
-      ep2 += D[k] * PetscSqr(p[k] - f->p[i][k]);
-      p2 += D[k] * PetscSqr(p[k]);
+    for (PetscInt k = 0; k < values; ++k) {
+      ep2 += D[k % n] * PetscSqr(p[k] - f->p[i][k]);
+      p2 += D[k % n] * PetscSqr(p[k]);
     }
     PetscCall(PetscFree(p));
   }

@@ -20,6 +20,17 @@ static PetscErrorCode AbutOldTraceKeep_Private(AbutOldTrace *old, PetscInt n, Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Values of the tractions of a pair at a node: the pressure, and with friction the tangential traction */
+static PetscErrorCode AbutInterfaceGetTractions_Private(AbutInterface f, PetscInt pair, PetscInt *each)
+{
+  PetscBool friction;
+
+  PetscFunctionBegin;
+  PetscCall(AbutPairGetFriction(f->pair[pair], &friction, NULL));
+  *each = friction ? 2 : 1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
    AbutInterfaceKeepTrace - Keeps a trace, and the pressures of the last sweep, before the meshes adapt
 
@@ -55,15 +66,38 @@ PetscErrorCode AbutInterfaceKeepTrace(AbutInterface iface, Vec x)
     PetscInt         which, n;
     const PetscReal *xn, *D;
     PetscReal       *unknown;
+    PetscInt         each = 1;
 
     PetscCall(AbutPairGetPressureNodes(iface->pair[i], &which, &n, &xn, &D));
-    PetscCall(PetscMalloc1(n, &unknown));
-    for (PetscInt k = 0; k < n; ++k) unknown[k] = iface->p[i][k] - iface->guess[i][k];
-    PetscCall(AbutOldTraceKeep_Private(&iface->oldpressure[i], n, 1, xn, unknown, (PetscBool)which));
+    PetscCall(AbutInterfaceGetTractions_Private(iface, i, &each));
+    PetscCall(PetscMalloc1(each * n, &unknown));
+    for (PetscInt k = 0; k < n; ++k)
+      for (PetscInt d = 0; d < each; ++d) unknown[each * k + d] = iface->p[i][d * n + k] - iface->guess[i][d * n + k];
+    PetscCall(AbutOldTraceKeep_Private(&iface->oldpressure[i], n, each, xn, unknown, (PetscBool)which));
     PetscCall(PetscFree(unknown));
   }
   iface->warm = iface->guessed;
   PetscCall(PetscFree(full));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutInterfaceForgetTrace - The next loop begins without pressures that were kept
+
+   Logically Collective
+
+   Input Parameter:
+.  iface - the map
+
+   Level: developer
+
+.seealso: `AbutInterfaceKeepTrace()`
+@*/
+PetscErrorCode AbutInterfaceForgetTrace(AbutInterface iface)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(iface, ABUTINTERFACE_CLASSID, 1);
+  iface->warm = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -126,14 +160,20 @@ PetscErrorCode AbutInterfaceTransferPressure_Private(AbutInterface iface)
   for (PetscInt i = 0; i < iface->npairs; ++i) {
     PetscInt         which, n, element = 0;
     const PetscReal *x, *D;
+    PetscReal        mu;
+    PetscBool        friction;
 
     PetscCall(AbutPairGetPressureNodes(iface->pair[i], &which, &n, &x, &D));
+    PetscCall(AbutPairGetFriction(iface->pair[i], &friction, &mu));
     for (PetscInt k = 0; k < n; ++k) {
       const PetscInt node = which ? n - 1 - k : k;
-      PetscReal      p;
+      PetscReal      p[2], most;
 
-      AbutOldTraceValue_Private(&iface->oldpressure[i], x + 2 * node, &element, &p);
-      iface->p[i][node] = D[node] > 0. ? PetscMax(0., iface->guess[i][node] + p) : 0.;
+      AbutOldTraceValue_Private(&iface->oldpressure[i], x + 2 * node, &element, p);
+      iface->p[i][node] = D[node] > 0. ? PetscMax(0., iface->guess[i][node] + p[0]) : 0.;
+      if (!friction) continue;
+      most                  = mu * iface->p[i][node];
+      iface->p[i][n + node] = PetscMax(-most, PetscMin(most, iface->guess[i][n + node] + p[1]));
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -188,7 +228,13 @@ PetscErrorCode AbutInterfaceArchive(AbutInterface iface, AbutArchive ar)
   iface->startsweeps = state[1];
   iface->warm        = (PetscBool)state[2];
   for (PetscInt t = 0; t < 2 * iface->npairs; ++t) PetscCall(AbutOldTraceArchive_Private(&iface->old[t], ar));
-  for (PetscInt i = 0; i < iface->npairs; ++i) PetscCall(AbutOldTraceArchive_Private(&iface->oldpressure[i], ar));
+  for (PetscInt i = 0; i < iface->npairs; ++i) {
+    PetscBool friction;
+
+    PetscCall(AbutOldTraceArchive_Private(&iface->oldpressure[i], ar));
+    PetscCall(AbutPairGetFriction(iface->pair[i], &friction, NULL));
+    if (friction) PetscCall(AbutPairArchiveSlip(iface->pair[i], ar));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -2,7 +2,7 @@
 
 /*@C
    AbutPairComputePressure - Nodal pressures of the penalty law, p = max(0, u_n1 + u_n2 - f)/theta, for given traces: eqs. (15), (20) of the
-   paper
+   paper; with friction also the tangential tractions
 
    Not Collective
 
@@ -12,7 +12,7 @@
 -  u2   - [components*n2] the same on the second side
 
    Output Parameter:
-.  p - [nodes of the pressure side] pressures, stress; 0 at nodes that carry none
+.  p - [nodes of the pressure side] pressures, stress; 0 at nodes that carry none; with friction [2*nodes], the tangential tractions behind
 
    Level: intermediate
 
@@ -23,6 +23,7 @@ PetscErrorCode AbutPairComputePressure(AbutPair pair, const PetscReal u1[], cons
   PetscFunctionBegin;
   PetscCall(AbutPairComputePenetration(pair, u1, u2, p));
   for (PetscInt i = 0; i < pair->n[pair->which]; ++i) p[i] = PetscMax(0., p[i]) / pair->theta;
+  if (pair->friction) PetscCall(AbutPairFrictionLaw_Private(pair, u1, u2, p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -33,7 +34,7 @@ PetscErrorCode AbutPairComputePressure(AbutPair pair, const PetscReal u1[], cons
 
    Input Parameters:
 +  pair - the pair, set up
--  p    - [nodes of the pressure side] pressures, stress
+-  p    - [nodes of the pressure side] pressures, stress; with friction [2*nodes], the tangential tractions behind
 
    Output Parameters:
 +  f1 - [components*n1] integrals of the pressure against the functions of the first side's nodes, stress times length
@@ -62,6 +63,7 @@ PetscErrorCode AbutPairComputeForce(AbutPair pair, const PetscReal p[], PetscRea
                                                                                                                           i, j) *
                                                                                                 p[pair->order[0] * seg->element[0] + i];
   }
+  if (pair->friction) PetscCall(AbutPairFrictionForce_Private(pair, p + pair->n[pair->which], force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -150,8 +152,8 @@ static PetscErrorCode AbutPairApproach_Private(AbutPair pair, const PetscReal x[
 .  pair - the pair, set up
 
    Output Parameters:
-+  u1    - [n1] normal displacements at the nodes of the first side, length
-.  u2    - [n2] the same on the second side
++  u1    - [components*n1] displacements at the nodes of the first side, length
+.  u2    - [components*n2] the same on the second side
 -  found - `PETSC_FALSE` where a body has no support with prescribed displacement opposite to its side, or the sides are curved; u1, u2 are
            then not set
 
@@ -165,9 +167,9 @@ PetscErrorCode AbutPairComputeWinkler(AbutPair pair, PetscReal u1[], PetscReal u
   PetscReal        compliance[2];
 
   PetscFunctionBegin;
-  *found = (PetscBool)(pair->components == 1 && !pair->obstacle);
+  *found = (PetscBool)(pair->straight && !pair->obstacle);
   PetscCall(AbutPairGetCompliance(pair, compliance));
-  for (PetscInt s = 0; s < 2 && *found; ++s)
+  for (PetscInt s = 0; s < 2 && *found; ++s) {
     for (PetscInt i = 0; i < pair->n[s]; ++i) {
       const PetscReal *x = pair->nodes[s]->x + 2 * i;
       PetscReal        base[2], f, p;
@@ -178,6 +180,8 @@ PetscErrorCode AbutPairComputeWinkler(AbutPair pair, PetscReal u1[], PetscReal u
       p       = PetscMax(0., base[0] + base[1] - f) / (pair->theta + compliance[0] + compliance[1]);
       u[s][i] = base[s] - p * compliance[s];
     }
+    if (*found) PetscCall(AbutPairSetNormalTrace(pair, s, u[s], u[s]));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -242,7 +242,7 @@ PetscErrorCode AbutPairMortar_Private(AbutPair pair)
   pair->order[0] = own->order;
   pair->order[1] = other ? other->order : -1;
   PetscCall(AbutPairProject_Private(pair));
-  pair->components = pair->straight ? 1 : 2;
+  pair->components = pair->straight && !pair->friction ? 1 : 2;
   PetscCall(PetscCalloc3(own->n, &pair->D, own->n, &pair->F, own->n, &pair->work));
   PetscCall(AbutBodyGetKinematics(pair->body[0], &kinematics));
   pair->axial  = (PetscBool)(kinematics == ABUT_AXISYMMETRIC);
@@ -257,6 +257,7 @@ PetscErrorCode AbutPairMortar_Private(AbutPair pair)
 
     if (to - from >= 1e-9 * (*end - *s)) PetscCall(AbutPairElement_Private(pair, &k, e, from, to));
   }
+  if (pair->friction) PetscCall(AbutPairFrictionSetUp_Private(pair));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

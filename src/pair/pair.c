@@ -24,6 +24,7 @@ static const char *const AbutPressureSideNames[] = {"first", "second", "finer", 
                                       length: y for the plane y = 0, sqrt(x^2+(y-8)^2)-8 for a disc
 .  -NAME_pair_penalty <c>           - theta = c H/E, default 0.05; 0 for exact contact
 .  -NAME_pair_theta <theta>         - theta itself, length/stress
+.  -NAME_pair_friction <mu>        - coefficient of Coulomb friction; without it the pair is frictionless
 .  -NAME_pair_height <H>            - H, where it is not the extent of the first body along the normal, length
 -  -NAME_pair_pressure_side <first|second|finer> - which side carries the nodal pressures; finer is the other one where its body is clearly
                                                    stiffer
@@ -31,7 +32,10 @@ static const char *const AbutPressureSideNames[] = {"first", "second", "finer", 
    Level: intermediate
 
    Note:
-   Limits: frictionless, small displacements (the pairing of the sides is fixed). Exact contact, theta = 0, needs `SNESDDACTIVE`. Curved
+   With friction tangential tractions t act at the nodes that carry pressures: |t| <= mu p, and where a node slips, |t| = mu p against the
+   slip. Slip is counted from the end of the last load step; the penalty lets also sticking nodes slip, by theta t.
+
+   Limits: small displacements (the pairing of the sides is fixed). Exact contact, theta = 0, needs `SNESDDACTIVE`. Curved
    sides are polygons, whose points look for each other along the mean of the normals at their vertices: a contact side should have no
    corners. An obstacle neither moves nor gives way.
 
@@ -174,6 +178,7 @@ PetscErrorCode AbutPairSetFromOptions(AbutPair pair, PetscInt nbodies, AbutBody 
   PetscCall(PetscSNPrintf(key, sizeof(key), "%s_pair_gap", name));
   if (set[2]) PetscCall(AbutExpressionCreate(comm, key, text[2], &pair->gap));
   PetscCall(AbutPairObstacleFromOptions_Private(pair));
+  PetscCall(AbutPairFrictionFromOptions_Private(pair));
   PetscCall(AbutPairCheckFacing_Private(pair));
   PetscCall(AbutPairSetTheta_Private(pair));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -246,6 +251,7 @@ PetscErrorCode AbutPairView(AbutPair pair, PetscViewer viewer)
   PetscCall(PetscViewerASCIIPrintf(viewer, "pair %s: %s of %s on %s%s%s, gap %s, theta %g\n", ((PetscObject)pair)->name, side[0], body[0],
                                    pair->body[1] ? side[1] : "a rigid obstacle", pair->body[1] ? " of " : "", body[1], gap,
                                    (double)pair->theta));
+  if (pair->friction) PetscCall(PetscViewerASCIIPrintf(viewer, "  friction %g\n", (double)pair->friction->mu));
   if (pair->segment) {
     PetscCall(PetscViewerASCIIPushTab(viewer));
     PetscCall(PetscViewerASCIIPrintf(viewer,
@@ -279,6 +285,7 @@ PetscErrorCode AbutPairDestroy(AbutPair *pair)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(AbutPairMortarReset_Private(*pair));
+  PetscCall(AbutPairFrictionDestroy_Private(*pair));
   PetscCall(AbutExpressionDestroy(&(*pair)->gap));
   PetscCall(AbutExpressionDestroy(&(*pair)->obstacle));
   PetscCall(PetscHeaderDestroy(pair));
@@ -390,7 +397,7 @@ PetscErrorCode AbutPairGetSizes(AbutPair pair, PetscInt n[2])
 .  pair - the pair, set up
 
    Output Parameter:
-.  n - 1 for straight sides, the displacement along the outward normal; 2 for curved ones, both components
+.  n - 1 for straight sides, the displacement along the outward normal; 2, both components, for curved ones and with friction
 
    Level: intermediate
 

@@ -81,7 +81,7 @@ static PetscErrorCode AbutPairBalance_Private(AbutPair pair, const PetscReal p[]
 +  pair - the pair, set up
 .  u1   - [components*n1] displacements at the nodes of the first side, length
 .  u2   - [components*n2] the same on the second side
--  p    - [nodes of the pressure side] the pressures that act, stress
+-  p    - [nodes of the pressure side] the pressures that act, stress; with friction [2*nodes], the tangential tractions behind
 
    Output Parameter:
 .  state - the state
@@ -122,6 +122,7 @@ PetscErrorCode AbutPairGetState(AbutPair pair, const PetscReal u1[], const Petsc
     state->complementarity /= (compliance[0] + compliance[1] + pair->theta) * PetscSqr(largest);
     state->excess /= (compliance[0] + compliance[1] + pair->theta) * largest;
   } else if (state->excess > 0.) state->excess /= AbutPairScale_Private(pair, u1, u2); /* overlapping, and no force between them */
+  if (pair->friction) PetscCall(AbutPairFrictionState_Private(pair, u1, u2, p, largest, state));
   state->contact_edge = AbutPairEdge_Private(pair, g, p);
   PetscCall(AbutPairBalance_Private(pair, p, state));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -51,17 +51,19 @@ static PetscErrorCode AbutRecorderArchiveParts_Private(AbutRecorder rec, AbutArc
   }
   for (PetscInt i = 0; i < rec->nparts; ++i) {
     AbutRecorderPart *part    = &rec->part[i];
-    PetscInt          size[5] = {part->cycle, part->nvertices, part->ncells, part->corners, part->has_eta};
+    PetscInt          size[6] = {part->cycle, part->nvertices, part->ncells, part->corners, part->has_eta, part->step};
 
-    PetscCall(AbutArchiveString(ar, "body of fields", &part->body));
-    PetscCall(AbutArchiveInts(ar, "size of fields", 5, size));
+    PetscCall(AbutArchiveString(ar, "name of fields", &part->name));
+    PetscCall(AbutArchiveInts(ar, "size of fields", 6, size));
+    PetscCall(AbutArchiveReals(ar, "load factor of fields", 1, &part->factor));
     part->cycle     = size[0];
     part->nvertices = size[1];
     part->ncells    = size[2];
     part->corners   = size[3];
     part->has_eta   = (PetscBool)size[4];
+    part->step      = size[5];
   }
-  for (; !same && rec->nparts; --rec->nparts) PetscCall(PetscFree(rec->part[rec->nparts - 1].body));
+  for (; !same && rec->nparts; --rec->nparts) PetscCall(PetscFree(rec->part[rec->nparts - 1].name));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

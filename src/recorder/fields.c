@@ -1,7 +1,7 @@
 #include <abut/private/recorderimpl.h> /*I "abutrecorder.h" I*/
 
 /* A vector of `n` rows of `bs` numbers over all ranks, of which `local` (or PETSC_DECIDE) are here */
-static PetscErrorCode AbutFieldsCreateVec_Private(MPI_Comm comm, const char name[], PetscInt bs, PetscInt local, PetscInt n, Vec *v)
+PetscErrorCode AbutFieldsCreateVec_Private(MPI_Comm comm, const char name[], PetscInt bs, PetscInt local, PetscInt n, Vec *v)
 {
   PetscFunctionBegin;
   if (local == PETSC_DECIDE) PetscCall(PetscSplitOwnership(comm, &local, &n));
@@ -166,13 +166,15 @@ PetscErrorCode AbutFieldsDestroy_Private(AbutFields *f)
   PetscCall(VecDestroy(&f->von_mises));
   PetscCall(VecDestroy(&f->level));
   PetscCall(VecDestroy(&f->eta));
+  PetscCall(VecDestroy(&f->pressure));
+  PetscCall(VecDestroy(&f->gap));
+  PetscCall(VecDestroy(&f->normal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds one body of one cycle to what the index file lists */
-static PetscErrorCode AbutRecorderAddPart_Private(AbutRecorder rec, PetscInt cycle, AbutBody body, const AbutFields *f)
+/* Writes one body or side of one cycle, and adds it to what the index file lists */
+static PetscErrorCode AbutRecorderWritePart_Private(AbutRecorder rec, PetscInt cycle, const char name[], AbutFields *f)
 {
-  const char       *name;
   AbutRecorderPart *part;
 
   PetscFunctionBegin;
@@ -181,13 +183,16 @@ static PetscErrorCode AbutRecorderAddPart_Private(AbutRecorder rec, PetscInt cyc
     PetscCall(PetscRealloc(sizeof(AbutRecorderPart) * rec->maxparts, &rec->part));
   }
   part = &rec->part[rec->nparts++];
-  PetscCall(AbutBodyGetName(body, &name));
-  PetscCall(PetscStrallocpy(name, &part->body));
+  PetscCall(PetscStrallocpy(name, &part->name));
   part->cycle     = cycle;
+  part->step      = rec->step;
+  part->factor    = rec->factor;
   part->nvertices = f->nvertices;
   part->ncells    = f->ncells;
   part->corners   = f->corners;
   part->has_eta   = f->eta ? PETSC_TRUE : PETSC_FALSE;
+  PetscUseTypeMethod(rec, writepart, part, f);
+  PetscCall(AbutFieldsDestroy_Private(f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -215,7 +220,7 @@ PetscErrorCode AbutRecorderWantsFields(AbutRecorder rec, PetscBool *wants)
 }
 
 /*@
-   AbutRecorderWriteFields - Writes the fields of all bodies in one cycle, beside those of earlier cycles
+   AbutRecorderWriteFields - Writes the fields of all bodies and pairs in one cycle, beside those of earlier cycles: a series in time
 
    Collective
 
@@ -232,19 +237,31 @@ PetscErrorCode AbutRecorderWantsFields(AbutRecorder rec, PetscBool *wants)
    Level: intermediate
 
    Notes:
-   Per vertex the coordinates and the displacement (length unit of the scene); per cell the stress s11, s22, s33, s12 and its von
-   Mises value at the centre (stress unit), the refinement level, and eta. Vertices with unknowns come in the order of their global
-   numbers, hanging vertices follow. Of displacements of higher order the values at the vertices are written.
+   The time of the series is the number of the cycle from 0, through all load steps; every time has meshes of its own. With
+   `AbutRecorderSetStep()` every grid also has `step` and `load_factor` as field data.
 
-   Behind an .xdmf is an HDF5 file with the groups `/cycle_0000/BODY`, written by all ranks together. From the second cycle on it is
-   copied before more is appended, so that a crash leaves all earlier cycles readable; n cycles copy about n/2 times the final size.
-   A .vtu is gathered on rank 0 and is text: for meshes that fit there.
+   A body is a grid of its name. Per vertex it has the coordinates and the displacement (length unit of the scene), with a third component
+   of zero; per cell the stress s11, s22, s33, s12 and its von Mises value at the centre (stress unit), the refinement level, and eta.
+   Vertices with unknowns come in the order of their global numbers, hanging vertices follow. Of displacements of higher order the values
+   at the vertices are written.
 
-.seealso: `AbutRecorderWantsFields()`, `AbutRecorderWriteProfile()`, `AbutRecorderSetFromOptions()`
+   A pair of `AbutRecorderSetPairs()` is a polyline of its name along the side that carries the pressures, through all its nodes, where they
+   were before anything moved. At the nodes it has the contact `pressure` as the record reads it (`AbutPairState`): nodal, or from order 2
+   the consistent one, which may be largest between nodes; the `gap` that was given, and the `normal_displacement` of this side along its
+   outward normal.
+
+   Behind an .xdmf is an HDF5 file with the groups `/cycle_0000/NAME`, written by all ranks together, and one for every load step,
+   FILE_step_0001.h5. From its second cycle on it is copied before more is appended, so that a crash leaves all earlier cycles readable; n
+   cycles copy about n/2 times the final size. A .vtu is gathered on rank 0 and is text: for meshes that fit there; pairs are
+   .vtp. All are listed in the index, .xdmf or .pvd, which is replaced when all its files are there.
+
+.seealso: `AbutRecorderWantsFields()`, `AbutRecorderSetPairs()`, `AbutRecorderSetStep()`, `AbutRecorderWriteProfile()`,
+          `AbutRecorderSetFromOptions()`
 @*/
 PetscErrorCode AbutRecorderWriteFields(AbutRecorder rec, PetscInt cycle, PetscInt nbodies, AbutBody bodies[], Vec eta[])
 {
   const MPI_Comm comm = PetscObjectComm((PetscObject)rec);
+  const char    *name;
   AbutFields     f;
   PetscMPIInt    same;
 
@@ -260,9 +277,13 @@ PetscErrorCode AbutRecorderWriteFields(AbutRecorder rec, PetscInt cycle, PetscIn
     PetscCheck(same == MPI_IDENT || same == MPI_CONGRUENT, comm, PETSC_ERR_ARG_NOTSAMECOMM,
                "A body is not on the communicator of the recorder");
     PetscCall(AbutFieldsCreate_Private(bodies[i], eta ? eta[i] : NULL, &f));
-    PetscCall(AbutRecorderAddPart_Private(rec, cycle, bodies[i], &f));
-    PetscUseTypeMethod(rec, writepart, &rec->part[rec->nparts - 1], &f);
-    PetscCall(AbutFieldsDestroy_Private(&f));
+    PetscCall(AbutBodyGetName(bodies[i], &name));
+    PetscCall(AbutRecorderWritePart_Private(rec, cycle, name, &f));
+  }
+  for (PetscInt i = 0; i < rec->npairs; ++i) {
+    PetscCall(AbutFieldsCreateSide_Private(rec->iface, i, rec->pair[i], &f));
+    PetscCall(AbutPairGetName(rec->pair[i], &name));
+    PetscCall(AbutRecorderWritePart_Private(rec, cycle, name, &f));
   }
   PetscUseTypeMethod(rec, endcycle);
   PetscCall(PetscLogEventEnd(ABUTRECORDER_WriteFields, rec, 0, 0, 0));

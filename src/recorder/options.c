@@ -52,9 +52,12 @@ static PetscErrorCode AbutRecorderSetOutput_Private(AbutRecorder rec, const char
    Options Database Keys:
 +  -record FILE             - the record: one `key value` line each
 .  -record_csv FILE         - one line per cycle, one column per key
-.  -output FILE.xdmf        - fields of every cycle: FILE.h5 holds them, FILE.xdmf says so to ParaView
-.  -output FILE.vtu         - fields of every cycle: FILE_BODY_CYCLE.vtu, listed in FILE.pvd
-.  -output_profile FILE.csv - traces and pressures along every pair on the last mesh
+.  -output FILE.xdmf        - fields of every cycle: FILE.h5 holds them, with load steps FILE_step_0001.h5 and so on; FILE.xdmf says so to
+                              ParaView
+.  -output FILE.vtu         - fields of every cycle: FILE_NAME_CYCLE.vtu for every body, .vtp for every pair, listed in
+                              FILE.pvd
+.  -output_profile FILE.csv - traces and pressures along every pair on the last mesh; with load steps also FILE_step_0001.csv and so on, on
+                              the last mesh of every step
 -  -output_profile_cycles   - with it: after every cycle too, FILE_0000.csv and so on
 
    Level: beginner

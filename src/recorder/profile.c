@@ -1,5 +1,6 @@
 #include <abut/private/recorderimpl.h> /*I "abutrecorder.h" I*/
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 /* What the profile of one pair is made of, known on all ranks */
@@ -12,11 +13,13 @@ typedef struct {
   const PetscReal *pressure; /* [side[which]->n] */
   const PetscReal *length;   /* [side[which]->n] 0 where a node carries no pressure */
   PetscReal       *gap;      /* [side[which]->n] */
+  PetscReal       *slip;     /* [side[which]->n] NULL without friction; then pressure has the tangential tractions behind */
 } PairProfile;
 
 typedef struct {
   PetscInt     n;
   PairProfile *pair;
+  bool         friction; /* of any pair */
 } Profile;
 
 /* Arc length of each node from the first one on the way: to be called for i = 0, 1, ... */
@@ -37,7 +40,7 @@ static double NormalDisplacement(const PairProfile *p, int s, PetscInt i)
   return u[0] * normal[0] + u[1] * normal[1];
 }
 
-static void WriteTrace(FILE *f, const PairProfile *p, int s)
+static void WriteTrace(FILE *f, const PairProfile *p, int s, bool friction)
 {
   const AbutSide *side = p->side[s];
   double          arc  = 0.;
@@ -46,11 +49,11 @@ static void WriteTrace(FILE *f, const PairProfile *p, int s)
     const double x = side->x[2 * i], y = side->x[2 * i + 1];
 
     arc = AddArc(side, i, arc);
-    fprintf(f, "%s,%d,%.10g,%.10g,%.10g,%.10g,,\n", p->name, s + 1, arc, x, y, NormalDisplacement(p, s, i));
+    fprintf(f, "%s,%d,%.10g,%.10g,%.10g,%.10g,,%s\n", p->name, s + 1, arc, x, y, NormalDisplacement(p, s, i), friction ? ",," : "");
   }
 }
 
-static void WritePressure(FILE *f, const PairProfile *p)
+static void WritePressure(FILE *f, const PairProfile *p, bool friction)
 {
   const AbutSide *side = p->side[p->which];
   double          arc  = 0.;
@@ -60,7 +63,9 @@ static void WritePressure(FILE *f, const PairProfile *p)
 
     arc = AddArc(side, i, arc);
     if (p->length[i] == 0.) continue;
-    fprintf(f, "%s,pressure,%.10g,%.10g,%.10g,,%.10g,%.10g\n", p->name, arc, x, y, (double)p->gap[i], (double)p->pressure[i]);
+    fprintf(f, "%s,pressure,%.10g,%.10g,%.10g,,%.10g,%.10g", p->name, arc, x, y, (double)p->gap[i], (double)p->pressure[i]);
+    if (p->slip) fprintf(f, ",%.10g,%.10g\n", (double)p->slip[i], (double)p->pressure[side->n + i]);
+    else fprintf(f, friction ? ",,\n" : "\n");
   }
 }
 
@@ -68,10 +73,10 @@ static void WriteProfile(FILE *f, const void *ctx)
 {
   const Profile *p = (const Profile *)ctx;
 
-  fprintf(f, "pair,side,s,x,y,u_n,gap,pressure\n");
+  fprintf(f, "pair,side,s,x,y,u_n,gap,pressure%s\n", p->friction ? ",slip,traction_t" : "");
   for (PetscInt i = 0; i < p->n; ++i) {
-    for (int s = 0; s < 2 && p->pair[i].side[s]; ++s) WriteTrace(f, &p->pair[i], s);
-    WritePressure(f, &p->pair[i]);
+    for (int s = 0; s < 2 && p->pair[i].side[s]; ++s) WriteTrace(f, &p->pair[i], s, p->friction);
+    WritePressure(f, &p->pair[i], p->friction);
   }
 }
 
@@ -80,12 +85,14 @@ static PetscErrorCode AbutRecorderCollectPair_Private(AbutInterface iface, Petsc
   AbutBody         body[2];
   PetscInt         number[2], n;
   const PetscReal *x;
+  PetscBool        friction;
 
   PetscFunctionBegin;
   PetscCall(AbutPairGetName(pair, &p->name));
   PetscCall(AbutPairGetBodies(pair, body, number));
   PetscCall(AbutPairGetComponents(pair, &p->components));
   p->side[1] = NULL;
+  p->slip    = NULL;
   for (PetscInt s = 0; s < 2 && body[s]; ++s) {
     PetscCall(AbutBodyGetSide(body[s], number[s], &p->side[s]));
     PetscCall(AbutInterfaceGetTrace(iface, i, s, &p->trace[s]));
@@ -94,20 +101,43 @@ static PetscErrorCode AbutRecorderCollectPair_Private(AbutInterface iface, Petsc
   PetscCall(AbutPairGetPressureNodes(pair, &p->which, &n, &x, &p->length));
   PetscCall(PetscMalloc1(n, &p->gap));
   for (PetscInt k = 0; k < n; ++k) PetscCall(AbutPairGetNodeGap(pair, k, &p->gap[k]));
+  PetscCall(AbutPairGetFriction(pair, &friction, NULL));
+  if (!friction) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(n, &p->slip));
+  PetscCall(AbutPairComputeSlip(pair, p->trace[0], p->trace[1], p->slip));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode AbutRecorderWriteProfileTo_Private(AbutRecorder rec, const char path[], AbutInterface iface, PetscInt npairs,
                                                          AbutPair pairs[])
 {
-  Profile p = {npairs, NULL};
+  Profile p = {npairs, NULL, false};
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(npairs, &p.pair));
-  for (PetscInt i = 0; i < npairs; ++i) PetscCall(AbutRecorderCollectPair_Private(iface, i, pairs[i], &p.pair[i]));
+  for (PetscInt i = 0; i < npairs; ++i) {
+    PetscCall(AbutRecorderCollectPair_Private(iface, i, pairs[i], &p.pair[i]));
+    if (p.pair[i].slip) p.friction = true;
+  }
   PetscCall(AbutFileWrite(PetscObjectComm((PetscObject)rec), path, WriteProfile, &p));
-  for (PetscInt i = 0; i < npairs; ++i) PetscCall(PetscFree(p.pair[i].gap));
+  for (PetscInt i = 0; i < npairs; ++i) {
+    PetscCall(PetscFree(p.pair[i].gap));
+    PetscCall(PetscFree(p.pair[i].slip));
+  }
   PetscCall(PetscFree(p.pair));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* FILE.csv as FILE_0000.csv, FILE_step_0001.csv */
+static PetscErrorCode AbutRecorderWriteNumberedProfile_Private(AbutRecorder rec, const char kind[], PetscInt number, AbutInterface iface,
+                                                               PetscInt npairs, AbutPair pairs[])
+{
+  const int stem = (int)(strlen(rec->profile_file) - strlen(".csv"));
+  char      path[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(path, sizeof(path), "%.*s%s_%04" PetscInt_FMT ".csv", stem, rec->profile_file, kind, number));
+  PetscCall(AbutRecorderWriteProfileTo_Private(rec, path, iface, npairs, pairs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -123,7 +153,8 @@ static PetscErrorCode AbutRecorderWriteProfileTo_Private(AbutRecorder rec, const
 -  pairs   - [npairs] the pairs, as given to `AbutInterfaceCreate()`
 
    Options Database Key:
-.  -output_profile FILE.csv - where; without it nothing is done
+.  -output_profile FILE.csv - where; without it nothing is done. With `AbutRecorderSetStep()` the same goes to FILE_step_0001.csv, with the
+                              number of the step
 
    Level: intermediate
 
@@ -134,6 +165,9 @@ static PetscErrorCode AbutRecorderWriteProfileTo_Private(AbutRecorder rec, const
    pressure, whose polynomials have the largest value of the record from order 2 on, is `AbutPairRecoverPressure()`. The other cells are
    empty.
 
+   Where a pair has friction there are two more columns, slip and traction_t, filled where the pressures of such pairs are:
+   `AbutPairComputeSlip()`, and the tangential traction of the first body on the second along the same tangent.
+
 .seealso: `AbutRecorderWriteCycleProfile()`, `AbutInterfaceGetTrace()`, `AbutInterfaceGetPressure()`, `AbutPairGetPressureNodes()`,
           `AbutRecorderSetFromOptions()`
 @*/
@@ -141,7 +175,9 @@ PetscErrorCode AbutRecorderWriteProfile(AbutRecorder rec, AbutInterface iface, P
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(rec, ABUTRECORDER_CLASSID, 1);
-  if (rec->profile_file) PetscCall(AbutRecorderWriteProfileTo_Private(rec, rec->profile_file, iface, npairs, pairs));
+  if (!rec->profile_file) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AbutRecorderWriteProfileTo_Private(rec, rec->profile_file, iface, npairs, pairs));
+  if (rec->step) PetscCall(AbutRecorderWriteNumberedProfile_Private(rec, "_step", rec->step, iface, npairs, pairs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -166,14 +202,8 @@ PetscErrorCode AbutRecorderWriteProfile(AbutRecorder rec, AbutInterface iface, P
 @*/
 PetscErrorCode AbutRecorderWriteCycleProfile(AbutRecorder rec, PetscInt cycle, AbutInterface iface, PetscInt npairs, AbutPair pairs[])
 {
-  char   path[PETSC_MAX_PATH_LEN];
-  size_t stem;
-
   PetscFunctionBegin;
   PetscValidHeaderSpecific(rec, ABUTRECORDER_CLASSID, 1);
-  if (!rec->profile_cycles) PetscFunctionReturn(PETSC_SUCCESS);
-  stem = strlen(rec->profile_file) - strlen(".csv");
-  PetscCall(PetscSNPrintf(path, sizeof(path), "%.*s_%04" PetscInt_FMT ".csv", (int)stem, rec->profile_file, cycle));
-  PetscCall(AbutRecorderWriteProfileTo_Private(rec, path, iface, npairs, pairs));
+  if (rec->profile_cycles) PetscCall(AbutRecorderWriteNumberedProfile_Private(rec, "", cycle, iface, npairs, pairs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

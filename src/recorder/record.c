@@ -78,7 +78,7 @@ PetscErrorCode AbutRecorderDestroy(AbutRecorder *rec)
   PetscCall(PetscFree(r->value));
   for (PetscInt i = 0; i < r->nrows; ++i) PetscCall(PetscStrNArrayDestroy(r->row[i].n, &r->row[i].value));
   PetscCall(PetscFree(r->row));
-  for (PetscInt i = 0; i < r->nparts; ++i) PetscCall(PetscFree(r->part[i].body));
+  for (PetscInt i = 0; i < r->nparts; ++i) PetscCall(PetscFree(r->part[i].name));
   PetscCall(PetscFree(r->part));
   PetscCall(PetscViewerDestroy(&r->viewer));
   PetscCall(PetscFree(r->record_file));

@@ -1,14 +1,14 @@
-/* FILE_BODY_0000.vtu for every body and cycle, and FILE.pvd which lists them (VTK File Formats, vtk.org) */
+/* FILE_NAME_0000.vtu for every body and cycle, .vtp for every pair, and FILE.pvd which lists them (VTK File Formats, vtk.org) */
 #include <abut/private/recorderimpl.h>
 #include <string.h>
 
 #define VTK_TRIANGLE 5
 #define VTK_QUAD     9
 
-/* The arrays of one body on rank 0, where they are written; NULL elsewhere */
+/* The arrays of one body or side on rank 0, where they are written; NULL elsewhere, and those it does not have */
 typedef struct {
-  PetscInt           nvertices, ncells, corners;
-  const PetscScalar *vertices, *displacement, *cells, *stress, *von_mises, *level, *eta;
+  const AbutRecorderPart *part;
+  const PetscScalar      *vertices, *displacement, *cells, *stress, *von_mises, *level, *eta, *pressure, *gap, *normal;
 } Arrays;
 
 static PetscErrorCode AbutRecorderGather_VTU(Vec v, Vec *all, const PetscScalar **array)
@@ -65,55 +65,106 @@ static void WriteArray(FILE *f, const char attributes[], PetscInt n, PetscInt m,
   fprintf(f, "        </DataArray>\n");
 }
 
-static void WriteCells(FILE *f, const Arrays *a)
+/* Corners of the cells, or ends of the lines; only cells have types */
+static void WriteCells(FILE *f, const Arrays *a, const char kind[], PetscBool types)
 {
-  fprintf(f, "      <Cells>\n");
-  WriteArray(f, "type=\"Int32\" Name=\"connectivity\"", a->corners * a->ncells, 1, 1, a->cells);
+  const PetscInt corners = a->part->corners, ncells = a->part->ncells;
+
+  fprintf(f, "      <%s>\n", kind);
+  WriteArray(f, "type=\"Int32\" Name=\"connectivity\"", corners * ncells, 1, 1, a->cells);
   fprintf(f, "        <DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">\n");
-  for (PetscInt c = 1; c <= a->ncells; ++c) fprintf(f, "%" PetscInt_FMT "\n", a->corners * c);
-  fprintf(f, "        </DataArray>\n        <DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">\n");
-  for (PetscInt c = 0; c < a->ncells; ++c) fprintf(f, "%d\n", a->corners == 4 ? VTK_QUAD : VTK_TRIANGLE);
-  fprintf(f, "        </DataArray>\n      </Cells>\n");
+  for (PetscInt c = 1; c <= ncells; ++c) fprintf(f, "%" PetscInt_FMT "\n", corners * c);
+  if (types) fprintf(f, "        </DataArray>\n        <DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">\n");
+  for (PetscInt c = 0; types && c < ncells; ++c) fprintf(f, "%d\n", corners == 4 ? VTK_QUAD : VTK_TRIANGLE);
+  fprintf(f, "        </DataArray>\n      </%s>\n", kind);
 }
 
-static void WriteBody(FILE *f, const void *ctx)
+static void WriteBodyData(FILE *f, const Arrays *a)
 {
-  const Arrays  *a  = (const Arrays *)ctx;
-  const PetscInt nv = a->nvertices, nc = a->ncells;
+  const PetscInt nc       = a->part->ncells;
   const char     stress[] = "type=\"Float64\" Name=\"stress\" ComponentName0=\"s11\" ComponentName1=\"s22\" "
                             "ComponentName2=\"s33\" ComponentName3=\"s12\"";
 
-  fprintf(f, "<?xml version=\"1.0\"?>\n");
-  fprintf(f, "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\">\n  <UnstructuredGrid>\n");
-  fprintf(f, "    <Piece NumberOfPoints=\"%" PetscInt_FMT "\" NumberOfCells=\"%" PetscInt_FMT "\">\n      <Points>\n", nv, nc);
-  WriteArray(f, "type=\"Float64\" Name=\"vertices\"", nv, 2, 3, a->vertices);
-  fprintf(f, "      </Points>\n");
-  WriteCells(f, a);
   fprintf(f, "      <PointData Vectors=\"displacement\">\n");
-  WriteArray(f, "type=\"Float64\" Name=\"displacement\"", nv, 2, 3, a->displacement);
+  WriteArray(f, "type=\"Float64\" Name=\"displacement\"", a->part->nvertices, 2, 3, a->displacement);
   fprintf(f, "      </PointData>\n      <CellData Scalars=\"von_mises\">\n");
   WriteArray(f, stress, nc, 4, 4, a->stress);
   WriteArray(f, "type=\"Float64\" Name=\"von_mises\"", nc, 1, 1, a->von_mises);
   WriteArray(f, "type=\"Int32\" Name=\"level\"", nc, 1, 1, a->level);
   if (a->eta) WriteArray(f, "type=\"Float64\" Name=\"eta\"", nc, 1, 1, a->eta);
-  fprintf(f, "      </CellData>\n    </Piece>\n  </UnstructuredGrid>\n</VTKFile>\n");
+  fprintf(f, "      </CellData>\n");
 }
+
+static void WriteSideData(FILE *f, const Arrays *a)
+{
+  const PetscInt nv = a->part->nvertices;
+
+  fprintf(f, "      <PointData Scalars=\"pressure\">\n");
+  WriteArray(f, "type=\"Float64\" Name=\"pressure\"", nv, 1, 1, a->pressure);
+  WriteArray(f, "type=\"Float64\" Name=\"gap\"", nv, 1, 1, a->gap);
+  WriteArray(f, "type=\"Float64\" Name=\"normal_displacement\"", nv, 1, 1, a->normal);
+  fprintf(f, "      </PointData>\n");
+}
+
+static void WriteNumber(FILE *f, const char name[], double value)
+{
+  fprintf(f, "      <DataArray type=\"Float64\" Name=\"%s\" NumberOfTuples=\"1\" format=\"ascii\">%.17g</DataArray>\n", name, value);
+}
+
+static void WritePart(FILE *f, const void *ctx)
+{
+  const Arrays           *a    = (const Arrays *)ctx;
+  const AbutRecorderPart *p    = a->part;
+  const PetscBool         side = (PetscBool)(p->corners == 2);
+  const char             *type = side ? "PolyData" : "UnstructuredGrid";
+
+  fprintf(f, "<?xml version=\"1.0\"?>\n");
+  fprintf(f, "<VTKFile type=\"%s\" version=\"1.0\" byte_order=\"LittleEndian\">\n  <%s>\n", type, type);
+  if (p->step) {
+    fprintf(f, "    <FieldData>\n");
+    WriteNumber(f, "step", p->step);
+    WriteNumber(f, "load_factor", p->factor);
+    fprintf(f, "    </FieldData>\n");
+  }
+  fprintf(f, "    <Piece NumberOfPoints=\"%" PetscInt_FMT "\" %s=\"%" PetscInt_FMT "\">\n      <Points>\n", p->nvertices,
+          side ? "NumberOfLines" : "NumberOfCells", p->ncells);
+  WriteArray(f, "type=\"Float64\" Name=\"vertices\"", p->nvertices, 2, 3, a->vertices);
+  fprintf(f, "      </Points>\n");
+  if (side) {
+    WriteCells(f, a, "Lines", PETSC_FALSE);
+    WriteSideData(f, a);
+  } else {
+    WriteCells(f, a, "Cells", PETSC_TRUE);
+    WriteBodyData(f, a);
+  }
+  fprintf(f, "    </Piece>\n  </%s>\n</VTKFile>\n", type);
+}
+
+/* FILE_NAME_0000.vtu of a body, .vtp of a side */
+static void NameFile(const char stem[], const AbutRecorderPart *p, char path[], size_t len)
+{
+  snprintf(path, len, "%s_%s_%04" PetscInt_FMT ".%s", stem, p->name, p->cycle, p->corners == 2 ? "vtp" : "vtu");
+}
+
+#define ARRAYS 10
 
 static PetscErrorCode AbutRecorderWritePart_VTU(AbutRecorder rec, const AbutRecorderPart *part, const AbutFields *fields)
 {
   char                path[PETSC_MAX_PATH_LEN];
-  Vec                 cells, all[7];
-  Arrays              a       = {part->nvertices, part->ncells, part->corners, NULL, NULL, NULL, NULL, NULL, NULL, NULL};
-  const PetscScalar **array[] = {&a.cells, &a.vertices, &a.displacement, &a.stress, &a.von_mises, &a.level, &a.eta};
-  const Vec field[] = {NULL, fields->vertices, fields->displacement, fields->stress, fields->von_mises, fields->level, fields->eta};
+  Vec                 cells, all[ARRAYS];
+  Arrays              a             = {.part = part};
+  const PetscScalar **array[ARRAYS] = {&a.cells, &a.vertices, &a.displacement, &a.stress, &a.von_mises,
+                                       &a.level, &a.eta,      &a.pressure,     &a.gap,    &a.normal};
+  const Vec           field[ARRAYS] = {NULL,          fields->vertices, fields->displacement, fields->stress, fields->von_mises,
+                                       fields->level, fields->eta,      fields->pressure,     fields->gap,    fields->normal};
 
   PetscFunctionBegin;
   PetscCall(AbutRecorderCreateCellVec_VTU(fields->cells, &cells));
-  for (int i = 0; i < 7; ++i) PetscCall(AbutRecorderGather_VTU(i ? field[i] : cells, &all[i], array[i]));
+  for (int i = 0; i < ARRAYS; ++i) PetscCall(AbutRecorderGather_VTU(i ? field[i] : cells, &all[i], array[i]));
   PetscCall(VecDestroy(&cells));
-  PetscCall(PetscSNPrintf(path, sizeof(path), "%s_%s_%04" PetscInt_FMT ".vtu", rec->output, part->body, part->cycle));
-  PetscCall(AbutFileWrite(PetscObjectComm((PetscObject)rec), path, WriteBody, &a));
-  for (int i = 0; i < 7; ++i) PetscCall(AbutRecorderRelease_VTU(&all[i], array[i]));
+  NameFile(rec->output, part, path, sizeof(path));
+  PetscCall(AbutFileWrite(PetscObjectComm((PetscObject)rec), path, WritePart, &a));
+  for (int i = 0; i < ARRAYS; ++i) PetscCall(AbutRecorderRelease_VTU(&all[i], array[i]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -121,15 +172,17 @@ static void WriteIndex(FILE *f, const void *ctx)
 {
   const AbutRecorder rec   = (AbutRecorder)ctx;
   const char        *slash = strrchr(rec->output, '/'), *name = slash ? slash + 1 : rec->output;
-  PetscInt           body = 0;
+  char               path[PETSC_MAX_PATH_LEN];
+  PetscInt           number = 0;
 
   fprintf(f, "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n  <Collection>\n");
   for (PetscInt i = 0; i < rec->nparts; ++i) {
     const AbutRecorderPart *p = &rec->part[i];
 
-    body = i && p->cycle == rec->part[i - 1].cycle ? body + 1 : 0;
-    fprintf(f, "    <DataSet timestep=\"%" PetscInt_FMT "\" part=\"%" PetscInt_FMT "\" name=\"%s\" ", p->cycle, body, p->body);
-    fprintf(f, "file=\"%s_%s_%04" PetscInt_FMT ".vtu\"/>\n", name, p->body, p->cycle);
+    number = i && p->cycle == rec->part[i - 1].cycle ? number + 1 : 0;
+    fprintf(f, "    <DataSet timestep=\"%" PetscInt_FMT "\" part=\"%" PetscInt_FMT "\" name=\"%s\" ", p->cycle, number, p->name);
+    NameFile(name, p, path, sizeof(path));
+    fprintf(f, "file=\"%s\"/>\n", path);
   }
   fprintf(f, "  </Collection>\n</VTKFile>\n");
 }

@@ -12,7 +12,8 @@ static const struct {
     [ABUT_CHECK_CONTACT] = {"check.contact",         PETSC_FALSE},
   [ABUT_CHECK_TENSION] = {"check.tension",         PETSC_FALSE},
     [ABUT_CHECK_COMPLEMENTARITY] = {"check.complementarity", PETSC_TRUE },
-  [ABUT_CHECK_PENETRATION] = {"check.penetration",     PETSC_TRUE }
+  [ABUT_CHECK_PENETRATION] = {"check.penetration",     PETSC_TRUE },
+    [ABUT_CHECK_FRICTION] = {"check.friction",        PETSC_TRUE }
 };
 
 /* What a loop may leave at a node: so many times its residual, which is a measure of energy, measured were up to 10; but slender bodies
@@ -35,11 +36,17 @@ void AbutSceneBeginChecks_Private(AbutScene scene)
 /* Records them; the first one that does not hold is kept for the last line of the run. What the loop leaves counts on the last mesh. */
 PetscErrorCode AbutSceneEndChecks_Private(AbutScene scene, PetscBool last, PetscBool *consistent)
 {
-  const PetscInt n        = scene->npairs ? ABUT_CHECKS : ABUT_CHECK_CONTACT;
-  PetscReal      residual = 0., pressure = 0.;
+  PetscReal residual = 0., pressure = 0.;
+  PetscInt  n = scene->npairs ? ABUT_CHECK_FRICTION : ABUT_CHECK_CONTACT;
 
   PetscFunctionBegin;
   *consistent = PETSC_TRUE;
+  for (PetscInt i = 0; i < scene->npairs; ++i) {
+    PetscBool friction;
+
+    PetscCall(AbutPairGetFriction(scene->pair[i], &friction, NULL));
+    if (friction) n = ABUT_CHECKS;
+  }
   if (scene->npairs) PetscCall(AbutInterfaceGetResidual(scene->iface, &residual, &pressure));
   for (PetscInt i = 0; i < n; ++i) {
     const PetscReal loop = AbutChecks[i].ofloop ? PetscMax(ABUT_CHECK_NODE, ABUT_CHECK_RESIDUALS * PetscMax(residual, pressure)) : 0.;

@@ -20,7 +20,7 @@ PetscErrorCode AbutSceneCheckpointFromOptions_Private(AbutScene scene)
   PetscOptionsEnd();
   for (PetscInt i = 0; i < 2; ++i)
     AbutCheckInput(!set[i] || path[i][0], comm, "%s: no file is named; give the name of a file", i ? "restart" : "checkpoint");
-  AbutCheckInput(scene->adaptor || !(set[0] || set[1]), comm,
+  AbutCheckInput(scene->adaptor || scene->nsteps > 1 || !(set[0] || set[1]), comm,
                  "%s: the scene has no adaptor, so it has one cycle and nothing to go on with; give adaptor_type, or leave it out",
                  set[0] ? "checkpoint" : "restart");
   AbutCheckInput(scene->every > 0, comm, "checkpoint_every: %" PetscInt_FMT " is no number of cycles; give 1 or more", scene->every);
@@ -98,6 +98,7 @@ static PetscErrorCode AbutSceneArchive_Private(AbutScene scene, AbutArchive ar)
                  " pairs, this one %" PetscInt_FMT " and %" PetscInt_FMT,
                  size[0], size[1], scene->nbodies, scene->npairs);
   PetscCall(AbutSceneArchiveNumbers_Private(scene, ar, &stays));
+  PetscCall(AbutSceneArchiveStep_Private(scene, ar));
   for (PetscInt b = 0; b < scene->nbodies; ++b) PetscCall(AbutBodyArchive(scene->body[b], ar));
   PetscCall(AbutSceneArchiveEdges_Private(scene, ar));
   PetscCall(AbutInterfaceArchive(scene->iface, ar));

@@ -211,6 +211,29 @@ static PetscErrorCode AbutSceneCheckFollow_Private(AbutScene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Merged triangles are made again from the first mesh by the places of vertices on the grid of a box */
+static PetscErrorCode AbutSceneCheckCoarsen_Private(AbutScene scene)
+{
+  PetscReal part;
+
+  PetscFunctionBegin;
+  PetscCall(AbutAdaptorGetCoarsening(scene->adaptor, &part));
+  for (PetscInt b = 0; b < scene->nbodies && part > 0.; ++b) {
+    AbutMesh    mesh;
+    AbutShape   shape;
+    const char *name, *file;
+
+    PetscCall(AbutBodyGetName(scene->body[b], &name));
+    PetscCall(AbutBodyGetMesh(scene->body[b], &mesh));
+    PetscCall(AbutMeshGetFile(mesh, &file));
+    PetscCall(AbutMeshGetShape(mesh, &shape));
+    AbutCheckInput(!file || !scene->estimates[b] || shape == ABUT_QUAD, PetscObjectComm((PetscObject)scene),
+                   "adaptor_coarsen: the triangles of %s are from a file and are not merged; leave it out, or give a file with quads",
+                   name);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Keys of the adaptor that speak of contacts */
 static PetscErrorCode AbutSceneCheckContactKeys_Private(AbutScene scene)
 {
@@ -252,6 +275,7 @@ static PetscErrorCode AbutSceneCheckContactKeys_Private(AbutScene scene)
 .  -record_time_ratio       - measures the processor time of the run in linear problems on its last mesh: `time.ratio`
 .  -scene_cold              - with an adaptor: every mesh begins without the traces and forces of the last one
 .  -scene_eps_u <0.0015>   - with it: the relative change of the traces at which the run ends
+.  -scene_load_steps <f1,f2,...> - factors of all that is prescribed, one load step for each, see `AbutSceneSolve()`
 .  -scene_tol T            - relative error in the energy norm to be reached: chooses theta, tolerances and refinement, see below
 .  -adaptor_type, -estimator_type, -snes_* - what adapts, estimates, iterates; see `AbutAdaptorCreate()`, `AbutEstimatorCreate()`,
                                              `SNESDDNEUMANN`
@@ -285,6 +309,7 @@ PetscErrorCode AbutSceneSetFromOptions(AbutScene scene)
   PetscCall(AbutOptionsReal(PetscOptionsObject, "-scene_tol", "Relative error in the energy norm to be reached", &scene->tol, &hastol));
   PetscCall(AbutOptionsBool(PetscOptionsObject, "-record_time_ratio", "Processor time in linear problems on the last mesh",
                             &scene->wantsratio, NULL));
+  PetscCall(AbutSceneStepsFromOptions_Private(scene, PetscOptionsObject));
   PetscCall(PetscOptionsString("-adaptor_type", "Type of the adaptor", NULL, type, type, sizeof(type), &adapts));
   PetscCall(PetscOptionsString("-estimator_type", "Type of the estimator", NULL, type, type, sizeof(type), &estimates));
   PetscOptionsEnd();
@@ -302,12 +327,14 @@ PetscErrorCode AbutSceneSetFromOptions(AbutScene scene)
   if (scene->npairs && scene->adaptor && !scene->interleave) PetscCall(AbutSceneCyclesFromOptions_Private(scene));
   AbutCheckInput(!scene->interleave || scene->adaptor, comm,
                  "scene_interleave: the scene has no adaptor; give adaptor_type, or leave scene_interleave out");
+  if (scene->adaptor) PetscCall(AbutSceneCheckCoarsen_Private(scene));
   PetscCall(AbutSceneCheckContactKeys_Private(scene));
   PetscCall(PetscOptionsHasName(NULL, NULL, "-output_profile", &profile));
   AbutCheckInput(!profile || scene->npairs, comm,
                  "output_profile: the scene has no pair to make a profile of; give scene_pairs, or leave it out");
   PetscCall(AbutRecorderCreate(comm, &scene->recorder));
   PetscCall(AbutRecorderSetFromOptions(scene->recorder));
+  PetscCall(AbutRecorderSetPairs(scene->recorder, scene->iface, scene->npairs, scene->pair));
   PetscCall(AbutSceneCheckpointFromOptions_Private(scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -78,6 +78,7 @@ static PetscErrorCode AbutScenePrintPairs_Private(AbutScene scene)
   for (PetscInt i = 0; i < scene->npairs; ++i) {
     AbutPairState s;
     const char   *name;
+    PetscBool     friction;
 
     PetscCall(AbutPairGetName(scene->pair[i], &name));
     PetscCall(AbutInterfaceGetPairState(scene->iface, i, &s));
@@ -91,6 +92,10 @@ static PetscErrorCode AbutScenePrintPairs_Private(AbutScene scene)
                           name, (double)s.force, (double)s.pressure_max, (double)s.contact_edge, s.active, s.nodes));
     PetscCall(PetscPrintf(comm, "  penetration %.3g, complementarity %.1e, balance of forces %.1e\n", (double)s.penetration_max,
                           (double)s.complementarity, (double)s.balance));
+    PetscCall(AbutPairGetFriction(scene->pair[i], &friction, NULL));
+    if (friction)
+      PetscCall(PetscPrintf(comm, "  tangential force %.8g, largest slip %.3g, %.6g of %.6g sticks\n", (double)s.tangential,
+                            (double)s.slip_max, (double)s.stick_length, (double)s.contact_length));
     if (s.active == 1)
       PetscCall(PetscPrintf(comm, "warning: pair %s: one node in contact is too few for its pressure; take smaller cells there\n", name));
   }
@@ -122,8 +127,9 @@ static PetscErrorCode AbutScenePrintCost_Private(AbutScene scene)
                         scene->seconds[ABUT_TIME_ADAPT], scene->seconds[ABUT_TIME_OUTPUT]));
   PetscCall(AbutSceneGetUnknowns_Private(scene, &unknowns));
   if (scene->snes && !scene->interleave && scene->cycle > 1)
-    PetscCall(PetscPrintf(comm, "sweeps: %" PetscInt_FMT " on %" PetscInt_FMT " meshes, worth %.1f of the last mesh\n", scene->sweepsbefore,
-                          scene->cycle, (double)(scene->work / unknowns)));
+    PetscCall(PetscPrintf(comm, "sweeps: %" PetscInt_FMT " %s %" PetscInt_FMT " %s, worth %.1f of the last mesh\n", scene->sweepsbefore,
+                          scene->nsteps ? "in" : "on", scene->cycle, scene->nsteps ? "cycles" : "meshes",
+                          (double)(scene->work / unknowns)));
   PetscCall(PetscPrintf(comm, "element matrices and their insertion: %.2f microseconds a cell (%" PetscInt_FMT " cells)\n",
                         assembled ? (double)(1e6 * assembly / assembled) : 0., assembled));
   if (scene->ratio > 0.)

@@ -129,6 +129,20 @@ static PetscErrorCode AbutSceneRecordPair_Private(AbutScene scene, const char na
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode AbutSceneRecordFriction_Private(AbutScene scene, PetscInt pair, const char name[], const AbutPairState *s)
+{
+  PetscBool friction;
+
+  PetscFunctionBegin;
+  PetscCall(AbutPairGetFriction(scene->pair[pair], &friction, NULL));
+  if (!friction) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AbutSceneSetReal_Private(scene, "pair", name, "tangential", s->tangential));
+  PetscCall(AbutSceneSetReal_Private(scene, "pair", name, "slip_max", s->slip_max));
+  PetscCall(AbutSceneSetReal_Private(scene, "pair", name, "stick_length", s->stick_length));
+  AbutSceneAddCheck_Private(scene, ABUT_CHECK_FRICTION, s->friction);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode AbutSceneRecordPairs_Private(AbutScene scene)
 {
   AbutRecorder rec     = scene->recorder;
@@ -145,6 +159,7 @@ static PetscErrorCode AbutSceneRecordPairs_Private(AbutScene scene)
     PetscCall(AbutPairGetTheta(scene->pair[i], &theta));
     PetscCall(AbutInterfaceGetPairState(scene->iface, i, &s));
     PetscCall(AbutSceneRecordPair_Private(scene, name, theta, &s));
+    PetscCall(AbutSceneRecordFriction_Private(scene, i, name, &s));
     penalty += s.energy;
     AbutSceneAddCheck_Private(scene, ABUT_CHECK_CONTACT, s.balance);
     AbutSceneAddCheck_Private(scene, ABUT_CHECK_TENSION,
@@ -227,6 +242,7 @@ PetscErrorCode AbutSceneRecord_Private(AbutScene scene, PetscBool last, PetscBoo
   PetscFunctionBegin;
   PetscCall(AbutRecorderSetString(scene->recorder, "verdict", scene->verdict));
   PetscCall(AbutRecorderSetInt(scene->recorder, "cycles", scene->cycle + 1));
+  PetscCall(AbutSceneRecordStep_Private(scene));
   PetscCall(AbutSceneRecordSweeps_Private(scene));
   AbutSceneBeginChecks_Private(scene);
   PetscCall(AbutSceneRecordBodies_Private(scene));

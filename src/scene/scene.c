@@ -64,6 +64,7 @@ PetscErrorCode AbutSceneSetUp(AbutScene scene)
   PetscCall(AbutInterfaceCheck(scene->iface));
   PetscCall(AbutSceneCheckLoop_Private(scene));
   PetscCall(AbutSceneRestart_Private(scene));
+  PetscCall(AbutSceneSetLoadFactor_Private(scene));
   PetscCall(AbutInterfaceSetUp(scene->iface));
   PetscCall(AbutSceneSetLinearTolerance_Private(scene));
   PetscCall(AbutSceneWarnOfOverlap_Private(scene));
@@ -244,6 +245,7 @@ PetscErrorCode AbutSceneDestroy(AbutScene *scene)
   }
   PetscCall(VecDestroy(&s->x));
   PetscCall(PetscFree(s->edge));
+  PetscCall(PetscFree(s->factor));
   PetscCall(PetscFree(s->checkpoint));
   PetscCall(AbutArchiveDestroy(&s->restart));
   PetscCall(SNESDestroy(&s->snes));

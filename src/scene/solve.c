@@ -26,7 +26,7 @@ static PetscErrorCode AbutSceneTrace_Private(AbutScene scene)
   PetscCall(AbutInterfaceCreateVec(scene->iface, &scene->x));
   PetscCall(AbutInterfaceSetSNES(scene->iface, scene->snes));
   PetscCall(PetscObjectTypeCompare((PetscObject)scene->snes, SNESDDACTIVE, &active));
-  if (scene->cycle && !scene->cold) PetscCall(AbutInterfaceTransferTrace(scene->iface, scene->x));
+  if (scene->cycle && !scene->cold && !scene->anew) PetscCall(AbutInterfaceTransferTrace(scene->iface, scene->x));
   else if (!active) PetscCall(AbutInterfaceComputeStart(scene->iface, (AbutStart)scene->start, scene->x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -125,19 +125,28 @@ static PetscErrorCode AbutSceneMark_Private(AbutScene scene, const PetscReal nor
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The trace leaves its meshes or its load, and is kept for what comes, or not */
+PetscErrorCode AbutSceneLeaveTrace_Private(AbutScene scene, PetscBool keep)
+{
+  PetscFunctionBegin;
+  if (!scene->snes) PetscFunctionReturn(PETSC_SUCCESS);
+  if (keep) PetscCall(AbutInterfaceKeepTrace(scene->iface, scene->x));
+  else PetscCall(AbutInterfaceForgetTrace(scene->iface));
+  PetscCall(VecDestroy(&scene->x));
+  /* a new solver: what the old one remembers belongs to the old mesh, and not every type forgets it in SNESReset() */
+  PetscCall(SNESDestroy(&scene->snes));
+  PetscCall(AbutSceneSolverFromOptions_Private(scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* New meshes; the trace crosses over by evaluation */
 static PetscErrorCode AbutSceneAdapt_Private(AbutScene scene, PetscBool *const marks[])
 {
   PetscFunctionBegin;
   PetscCall(AbutSceneKeepEdges_Private(scene));
   scene->settled = PETSC_TRUE;
-  if (scene->snes) {
-    if (!scene->cold) PetscCall(AbutInterfaceKeepTrace(scene->iface, scene->x));
-    PetscCall(VecDestroy(&scene->x));
-    /* a new solver: what the old one remembers belongs to the old mesh, and not every type forgets it in SNESReset() */
-    PetscCall(SNESDestroy(&scene->snes));
-    PetscCall(AbutSceneSolverFromOptions_Private(scene));
-  }
+  scene->anew    = PETSC_FALSE;
+  PetscCall(AbutSceneLeaveTrace_Private(scene, (PetscBool)!scene->cold));
   for (PetscInt b = 0; b < scene->nbodies; ++b) {
     if (!scene->estimates[b]) continue;
     if (marks[b]) scene->settled = PETSC_FALSE;
@@ -148,7 +157,7 @@ static PetscErrorCode AbutSceneAdapt_Private(AbutScene scene, PetscBool *const m
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Is this the last cycle, and with which verdict? */
+/* Is this the last cycle of the run or of its step, and with which verdict? */
 static PetscBool AbutSceneEnds_Private(AbutScene scene, PetscBool converged, PetscBool consistent, AbutAdaptVerdict adapt)
 {
   const PetscBool failed = (PetscBool)(strcmp(scene->verdict, "converged") != 0);
@@ -162,7 +171,7 @@ static PetscBool AbutSceneEnds_Private(AbutScene scene, PetscBool converged, Pet
   }
   if (adapt == ABUT_ADAPT_REFINED) return PETSC_FALSE;
   if (!converged) { /* interleaved: the meshes stand still, the traces not yet */
-    if (scene->cycle < 10000) return PETSC_FALSE;
+    if (scene->cycle - scene->first < 10000) return PETSC_FALSE;
     scene->verdict = "max_iterations";
     scene->status  = 2;
     return PETSC_TRUE;
@@ -178,13 +187,15 @@ static PetscBool AbutSceneEnds_Private(AbutScene scene, PetscBool converged, Pet
   return PETSC_TRUE;
 }
 
-static PetscErrorCode AbutSceneOutput_Private(AbutScene scene)
+/* last: of the run, or of its step */
+static PetscErrorCode AbutSceneOutput_Private(AbutScene scene, PetscBool last)
 {
   PetscBool wants;
 
   PetscFunctionBegin;
   PetscCall(AbutRecorderEndCycle(scene->recorder));
   if (scene->snes) PetscCall(AbutRecorderWriteCycleProfile(scene->recorder, scene->cycle, scene->iface, scene->npairs, scene->pair));
+  if (scene->snes && last) PetscCall(AbutRecorderWriteProfile(scene->recorder, scene->iface, scene->npairs, scene->pair));
   PetscCall(AbutRecorderWantsFields(scene->recorder, &wants));
   if (wants) PetscCall(AbutRecorderWriteFields(scene->recorder, scene->cycle, scene->nbodies, scene->body, scene->eta));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -258,11 +269,20 @@ static PetscErrorCode AbutSceneCycle_Private(AbutScene scene, PetscBool *marks[]
    types), and to its tolerance on the last mesh; with `-scene_interleave` a cycle is one sweep and one adaptation, as in Fig. 2
    of the paper. A run that does not converge keeps and writes its last answer; see `AbutSceneGetExitStatus()`.
 
+   With `-scene_load_steps` all this is done for one factor of the load after the other (`AbutBodySetLoadFactor()`), each on the meshes that
+   the last one left; ddactive starts from the forces of the last step, but from none where the factor is zero or has another sign. The
+   first step that does not converge or does not agree with itself ends the run; one that reaches a limit does not, but its verdict is
+   that of the run, if no later step fails.
+
+   Limits: contact without friction keeps no memory, so that every step has the answer that its factor alone has, but for the meshes: those
+   only become finer, unless `-adaptor_coarsen` is given, and move to the edges of the contacts of a step (`-adaptor_follow`) where that
+   step refines, or with `-adaptor_settle`.
+
 .seealso: `AbutSceneSetFromOptions()`, `AbutSceneGetExitStatus()`
 @*/
 PetscErrorCode AbutSceneSolve(AbutScene scene)
 {
-  PetscBool        ends = PETSC_FALSE, converged, consistent, *marks[ABUT_MAX_NAMES] = {NULL};
+  PetscBool        ends = PETSC_FALSE, next = PETSC_FALSE, converged, consistent, *marks[ABUT_MAX_NAMES] = {NULL};
   AbutAdaptVerdict adapt   = ABUT_ADAPT_DONE;
   PetscInt         nmarked = 0;
 
@@ -270,22 +290,23 @@ PetscErrorCode AbutSceneSolve(AbutScene scene)
   PetscCall(AbutSceneSetUp(scene));
   PetscCall(AbutScenePrintGamma_Private(scene));
   PetscCall(AbutScenePrintHeader_Private(scene));
+  PetscCall(AbutScenePrintStep_Private(scene));
   for (; !ends; ++scene->cycle) {
     PetscCall(AbutSceneCycle_Private(scene, marks, &converged, &adapt, &nmarked));
     PetscCall(AbutSceneRecord_Private(scene, (PetscBool)(adapt != ABUT_ADAPT_REFINED), &consistent));
     ends = AbutSceneEnds_Private(scene, converged, consistent, adapt);
+    PetscCall(AbutSceneEndStep_Private(scene, adapt, &ends, &next));
     PetscCall(AbutRecorderSetString(scene->recorder, "verdict", scene->verdict));
     PetscCall(AbutSceneRecordTimes_Private(scene));
     PetscCall(AbutScenePrintCycle_Private(scene, nmarked));
-    PetscCall(AbutSceneOutput_Private(scene));
+    PetscCall(AbutSceneOutput_Private(scene, (PetscBool)(ends || next)));
     PetscCall(AbutSceneClock_Private(scene, ABUT_TIME_OUTPUT));
-    if (!ends && adapt == ABUT_ADAPT_REFINED) PetscCall(AbutSceneAdapt_Private(scene, marks));
+    if (next) PetscCall(AbutSceneNextStep_Private(scene));
+    else if (!ends && adapt == ABUT_ADAPT_REFINED) PetscCall(AbutSceneAdapt_Private(scene, marks));
     PetscCall(AbutSceneFreeMarks_Private(scene, marks));
     PetscCall(AbutSceneClock_Private(scene, ABUT_TIME_ADAPT));
     if (!ends) PetscCall(AbutSceneCheckpoint_Private(scene));
   }
-  if (scene->snes) PetscCall(AbutRecorderWriteProfile(scene->recorder, scene->iface, scene->npairs, scene->pair));
-  PetscCall(AbutSceneClock_Private(scene, ABUT_TIME_OUTPUT));
   PetscCall(AbutSceneRecordTimes_Private(scene));
   PetscCall(AbutSceneRecordRatio_Private(scene));
   PetscCall(AbutRecorderWrite(scene->recorder));

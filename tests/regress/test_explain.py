@@ -24,7 +24,7 @@ def test_the_list_names_all_types_and_their_files():
     lines = {line.split()[0]: line for line in text.splitlines() if line.startswith("  ")}
     for name in "fembem", "zz", "residual":
         assert lines[name].endswith(f"[{os.path.realpath(BUILD)}/lib/libestimator_{name}.so]") and len(lines[name].split()) > 5, lines[name]
-    for name in "gravity", "ddactive", "ddneumann", "threshold", "equal", "doerfler":
+    for name in "gravity", "force", "pressure", "spring", "overlap", "ddactive", "ddneumann", "threshold", "equal", "doerfler":
         assert lines[name].endswith(f"[{os.path.realpath(BUILD)}/lib/libabut.so]"), lines[name]
     assert "libpetsc" in lines["anderson"] and say("-list", ranks=2) == text
 

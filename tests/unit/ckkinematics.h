@@ -12,6 +12,31 @@ static inline void CkField3D(const CkField *field, AbutKinematics kinematics, co
   else s[3] = field->poisson * (s[0] + s[1]) + (kinematics == ABUT_AXISYMMETRIC ? field->young * u[0] / x[0] : 0.);
 }
 
+/* CkSmooth() with kappa = (3 - nu)/(1 + nu) in place of 3 - 4 nu */
+static inline void CkSmoothSheet(const CkField *field, const PetscReal x[2], PetscReal u[2], PetscReal s[3])
+{
+  const PetscReal      nu = field->poisson, change = (3. - nu) / (1. + nu) - (3. - 4. * nu);
+  const double complex w = change * 2. * cexp(0.5 * (x[0] + I * x[1])) * (1. + nu) / field->young;
+
+  CkSmooth(field, x, u, s);
+  u[0] += creal(w);
+  u[1] += cimag(w);
+}
+
+/* A body of revolution, Papkovich and Neuber: 2 mu u = grad(z psi) - 4 (1 - nu) psi e_z, psi = exp(kz) J0(kr) harmonic */
+static inline void CkBessel(const CkField *field, const PetscReal x[2], PetscReal u[2], PetscReal s[3])
+{
+  const PetscReal k = 2., r = x[0], z = x[1], nu = field->poisson, twomu = field->young / (1. + nu);
+  const PetscReal psi = PetscExpReal(k * z) * j0(k * r), r1 = -k * PetscExpReal(k * z) * j1(k * r), z1 = k * psi;
+  const PetscReal rr = -k * k * psi - (r > 0. ? r1 / r : -0.5 * k * k * PetscExpReal(k * z)); /* Laplace's equation, z2 = k^2 psi */
+
+  u[0] = z * r1 / twomu;
+  u[1] = (z * z1 - (3. - 4. * nu) * psi) / twomu;
+  s[0] = z * rr - 2. * nu * z1;
+  s[1] = z * k * k * psi - 2. * (1. - nu) * z1;
+  s[2] = z * k * r1 - (1. - 2. * nu) * r1;
+}
+
 /* Error of the stress in the L2 norm over the body (a volume with axial symmetry), and of the displacement, relative */
 static inline void CkErrors3D(AbutBody body, const CkField *field, PetscReal *l2, PetscReal *stress)
 {

@@ -67,9 +67,10 @@ def fields(path, body, cycle):
 
     with h5py.File(path) as f:
         group = f[f"cycle_{cycle:04}/{body}"]
-        cells, x, u, s = (group[name][()] for name in ("cells", "vertices", "displacement", "stress"))
+        cells, x, u = (group[name][()] for name in ("cells", "vertices", "displacement"))
+        s = np.stack([group[name][()].ravel() for name in ("s11", "s22", "s12")], axis=1)
         eta = group["eta"][()].ravel() if "eta" in group else None
-    return x[cells.astype(int)], u[cells.astype(int)], s[:, [0, 1, 3]], eta
+    return x[cells.astype(int)], u[cells.astype(int), :2], s, eta
 
 
 class Reference:

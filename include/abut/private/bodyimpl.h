@@ -59,6 +59,7 @@ struct _p_AbutBody {
   const AbutCellOps *cell;
   PetscReal          young, poisson, lambda, mu; /* lambda is that of the plane: another one in plane stress */
   AbutCondition      condition[ABUT_MAX_SIDES][2];
+  PetscReal          factor;         /* of all that is prescribed */
   PetscBool          meandilatation; /* in each cell: against locking */
   AbutHook           hooks;          /* in the order they came; NULL: none */
   PetscBool          initial;        /* initial strains are among them */
@@ -100,6 +101,8 @@ struct _p_AbutBody {
 
 PETSC_INTERN PetscErrorCode    AbutBodySetConditionsFromOptions_Private(AbutBody, AbutOptionItems, char[], size_t);
 PETSC_INTERN PetscErrorCode    AbutBodyConditionsSetUp_Private(AbutBody);
+PETSC_INTERN PetscErrorCode    AbutBodyLift_Private(AbutBody);
+PETSC_INTERN PetscErrorCode    AbutBodyLoadsSetUp_Private(AbutBody);
 PETSC_INTERN PetscErrorCode    AbutBodyEdgeMoments_Private(AbutBody, PetscInt, PetscInt, const PetscReal[2], const PetscReal[2], PetscBool,
                                                            PetscReal[]);
 PETSC_INTERN PetscErrorCode    AbutBodySetLame_Private(AbutBody);

@@ -21,6 +21,14 @@ typedef struct {
    across it a part of the gap, of first order where elements of two lengths meet. */
 typedef PetscReal AbutSegmentVector[2][2][ABUT_SIDE_NODES_MAX][ABUT_SIDE_NODES_MAX];
 
+/* Coulomb friction, of pairs that have it */
+typedef struct {
+  PetscReal  mu;
+  PetscReal *reference; /* [nodes of the pressure side] slips from which slip is counted, on the present meshes */
+  PetscInt   n;         /* the same as they were kept, along the first side; 0: never */
+  PetscReal *x, *kept;
+} *AbutFriction;
+
 struct _p_AbutPair {
   PETSCHEADER(int);
   AbutBody         body[2]; /* the second one NULL: a rigid obstacle */
@@ -28,6 +36,7 @@ struct _p_AbutPair {
   AbutExpression   gap;      /* NULL: the distance of the sides */
   AbutExpression   obstacle; /* of a rigid one: its distance, positive where the body may be */
   PetscReal        penalty, theta, height;
+  AbutFriction     friction; /* NULL: none */
   PetscBool        thetaset;
   AbutPressureSide pressureside;
 
@@ -70,5 +79,13 @@ PETSC_INTERN void           AbutPairPointAt_Private(AbutPair, PetscReal, PetscRe
 PETSC_INTERN PetscErrorCode AbutPairGetReading_Private(AbutPair, const PetscReal[], PetscReal[]);
 PETSC_INTERN PetscErrorCode AbutPairGetLargest_Private(AbutPair, const PetscReal[], PetscReal *);
 PETSC_INTERN PetscBool      AbutPairEdgeBeyond_Private(AbutPair, const PetscReal[], const PetscReal[], PetscInt, PetscInt, PetscReal *);
+/* friction.c: only for pairs that have it, but for the first two */
+PETSC_INTERN PetscErrorCode AbutPairFrictionFromOptions_Private(AbutPair);
+PETSC_INTERN PetscErrorCode AbutPairFrictionDestroy_Private(AbutPair);
+PETSC_INTERN PetscErrorCode AbutPairFrictionSetUp_Private(AbutPair);
+PETSC_INTERN PetscErrorCode AbutPairFrictionLaw_Private(AbutPair, const PetscReal[], const PetscReal[], PetscReal[]);
+PETSC_INTERN PetscErrorCode AbutPairFrictionForce_Private(AbutPair, const PetscReal[], PetscReal *const[2]);
+PETSC_INTERN PetscErrorCode AbutPairFrictionState_Private(AbutPair, const PetscReal[], const PetscReal[], const PetscReal[], PetscReal,
+                                                          AbutPairState *);
 PETSC_INTERN PetscErrorCode AbutPairMortar_Private(AbutPair);
 PETSC_INTERN PetscErrorCode AbutPairMortarReset_Private(AbutPair);

@@ -4,7 +4,8 @@
 #include <petsc/private/petscimpl.h>
 
 /* The fields of one body, numbered over all ranks: row g of a vertex field is the vertex with global number g, hanging vertices follow.
-   A hanging vertex on a cut between ranks has a row for each of them. */
+   A hanging vertex on a cut between ranks has a row for each of them. Or the fields of a side of a pair, whose cells have two corners. What
+   a body, or a side, does not have is NULL. */
 typedef struct {
   PetscInt nvertices, ncells; /* over all ranks */
   PetscInt corners;
@@ -15,15 +16,21 @@ typedef struct {
   Vec      von_mises;    /* [cell] of that stress */
   Vec      level;        /* [cell] refinement level */
   Vec      eta;          /* [cell] error indicator, NULL where none was estimated */
+  Vec      pressure;     /* [vertex] of the side, as the record reads it */
+  Vec      gap, normal;  /* [vertex] gap before anything moves; displacement along the outward normal */
 } AbutFields;
 
 PETSC_INTERN PetscErrorCode AbutFieldsCreate_Private(AbutBody, Vec, AbutFields *);
+PETSC_INTERN PetscErrorCode AbutFieldsCreateSide_Private(AbutInterface, PetscInt, AbutPair, AbutFields *);
+PETSC_INTERN PetscErrorCode AbutFieldsCreateVec_Private(MPI_Comm, const char[], PetscInt, PetscInt, PetscInt, Vec *);
 PETSC_INTERN PetscErrorCode AbutFieldsDestroy_Private(AbutFields *);
 
-/* What the index files (.xdmf, .pvd) say of one body in one cycle */
+/* What the index files (.xdmf, .pvd) say of one body, or the side of a pair, in one cycle */
 typedef struct {
   PetscInt  cycle;
-  char     *body;
+  PetscInt  step; /* load step, 0 without */
+  PetscReal factor;
+  char     *name;
   PetscInt  nvertices, ncells, corners;
   PetscBool has_eta;
 } AbutRecorderPart;
@@ -37,7 +44,7 @@ typedef struct {
 /* How fields are written; all NULL without -output */
 struct _AbutRecorderOps {
   PetscErrorCode (*begincycle)(AbutRecorder);
-  PetscErrorCode (*writepart)(AbutRecorder, const AbutRecorderPart *, const AbutFields *); /* one body */
+  PetscErrorCode (*writepart)(AbutRecorder, const AbutRecorderPart *, const AbutFields *); /* one body or side */
   PetscErrorCode (*endcycle)(AbutRecorder);
 };
 
@@ -47,6 +54,11 @@ struct _p_AbutRecorder {
   char     *output;                                              /* output_file without its extension */
   PetscBool profile_cycles;                                      /* a profile of every cycle too */
 
+  PetscInt      step, npairs; /* 0 without steps; pairs that are written */
+  PetscReal     factor;
+  AbutInterface iface;
+  AbutPair     *pair;
+
   PetscInt nkeys, maxkeys;
   char   **key, **value; /* [nkeys] in order of first appearance */
 
@@ -54,7 +66,7 @@ struct _p_AbutRecorder {
   AbutRecorderRow *row; /* [nrows] one per cycle, kept for the CSV only */
 
   PetscInt          nparts, maxparts;
-  AbutRecorderPart *part;   /* [nparts] all bodies of all cycles written so far */
+  AbutRecorderPart *part;   /* [nparts] all bodies and pairs of all cycles written so far */
   PetscViewer       viewer; /* of the HDF5 file, open while a cycle is being written */
 };
 

@@ -46,6 +46,7 @@ typedef enum {
   ABUT_CHECK_TENSION, /* contact that pulls */
   ABUT_CHECK_COMPLEMENTARITY,
   ABUT_CHECK_PENETRATION, /* beyond what the penalty lets in */
+  ABUT_CHECK_FRICTION,    /* the law of friction; only where a pair has it */
   ABUT_CHECKS
 } AbutCheck;
 
@@ -88,6 +89,11 @@ struct _p_AbutScene {
   PetscInt    every;      /* cycles */
   AbutArchive restart;    /* from which the run goes on, NULL: it begins */
 
+  PetscInt         nsteps, step, first; /* load steps, 0: none is named; the present one from 0, and its first cycle */
+  PetscReal       *factor;              /* [nsteps] of all that is prescribed */
+  PetscBool        anew;                /* the step begins without what the last one left */
+  AbutAdaptVerdict limit;               /* the first one that a step has reached */
+
   PetscInt         nedges; /* of the last meshes that changed */
   AbutContactEdge *edge;
   PetscBool        settled;              /* the meshes have the cells of the last ones, and moved */
@@ -107,6 +113,15 @@ PETSC_INTERN PetscErrorCode AbutSceneWarnOfOverlap_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutScenePrintHeader_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutScenePrintCycle_Private(AbutScene, PetscInt);
 PETSC_INTERN PetscErrorCode AbutScenePrintEnd_Private(AbutScene);
+/* steps.c */
+PETSC_INTERN PetscErrorCode AbutSceneStepsFromOptions_Private(AbutScene, AbutOptionItems);
+PETSC_INTERN PetscErrorCode AbutSceneSetLoadFactor_Private(AbutScene);
+PETSC_INTERN PetscErrorCode AbutSceneRecordStep_Private(AbutScene);
+PETSC_INTERN PetscErrorCode AbutScenePrintStep_Private(AbutScene);
+PETSC_INTERN PetscErrorCode AbutSceneEndStep_Private(AbutScene, AbutAdaptVerdict, PetscBool *, PetscBool *);
+PETSC_INTERN PetscErrorCode AbutSceneNextStep_Private(AbutScene);
+PETSC_INTERN PetscErrorCode AbutSceneArchiveStep_Private(AbutScene, AbutArchive);
+PETSC_INTERN PetscErrorCode AbutSceneLeaveTrace_Private(AbutScene, PetscBool);
 /* edges.c */
 PETSC_INTERN PetscErrorCode AbutSceneKeepEdges_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutSideTouches_Private(AbutMesh, PetscInt, const PetscReal[2], PetscBool *);
