@@ -167,8 +167,8 @@ static PetscErrorCode AbutPairOnCurve_Private(AbutPair pair, PetscInt s, const P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The gap of a point of the pressure side, which looks along a normal, as if it and the point y of the other side lay on the curves of their
-   sides and not on polygons: from order 2 on the nodes between vertices would else stand back by what an arc is above its chord */
+/* The gap of a point x of the pressure side, which looks along a normal, as if it and the point y of the other side lay on the curves of
+   their sides and not on polygons: from order 2 on the nodes between vertices would else stand back by what an arc is above its chord */
 static PetscErrorCode AbutPairCurvedGap_Private(AbutPair pair, const PetscReal x[2], const PetscReal y[2], const PetscReal normal[2],
                                                 PetscReal *gap)
 {

@@ -17,8 +17,8 @@ typedef struct {
   PetscReal M[2][ABUT_SIDE_NODES_MAX][ABUT_SIDE_NODES_MAX];
 } AbutSegment;
 
-/* The same with the components of the outward normal of side s, point by point: [s][d][i][k]. A constant normal would leave the slip of a side
-   across it a part of the gap, of first order where elements of two lengths meet. */
+/* The same with the components of the outward normal of side s, point by point: [s][d][i][k]. A constant normal would count a part of the
+   slip as gap, of first order where elements of two lengths meet. */
 typedef PetscReal AbutSegmentVector[2][2][ABUT_SIDE_NODES_MAX][ABUT_SIDE_NODES_MAX];
 
 /* Coulomb friction, of pairs that have it */
