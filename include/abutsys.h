@@ -44,6 +44,7 @@ PETSC_EXTERN PetscErrorCode AbutExpressionDestroy(AbutExpression *);
 
 /* Files that are never half written */
 typedef void (*AbutFileWriter)(FILE *, const void *ctx);
+PETSC_EXTERN PetscErrorCode AbutFileFind(MPI_Comm, const char[], const char[], char[], size_t);
 PETSC_EXTERN PetscErrorCode AbutFileCheckPath(MPI_Comm, const char[], const char[]);
 PETSC_EXTERN PetscErrorCode AbutFileWrite(MPI_Comm, const char[], AbutFileWriter, const void *);
 PETSC_EXTERN PetscErrorCode AbutFileCopyAside(MPI_Comm, const char[]);

@@ -146,6 +146,25 @@ static void AbutContactModelTouching_Private(AbutContactModel model, const Petsc
     zone[i] = (PetscBool)(F[i] > ABUT_ROUNDOFF * largest && (loaded || F[i] * model->S[i * model->n + i] > ABUT_SINGULAR * gap));
 }
 
+/* Closes for every loaded motion the node that it closes first, and opens all others */
+static void AbutContactModelFirstMet_Private(AbutContactModel model, PetscBool zone[])
+{
+  for (PetscInt i = 0; i < model->n; ++i) zone[i] = PETSC_FALSE;
+  for (PetscInt k = 0; k < model->m; ++k) {
+    PetscReal least = PETSC_MAX_REAL;
+    PetscInt  first = -1;
+
+    for (PetscInt i = 0; i < model->n; ++i) {
+      const PetscReal toward = model->e[k] * model->G[k * model->n + i];
+
+      if (toward <= 0. || -model->b[i] >= least * toward) continue;
+      least = -model->b[i] / toward;
+      first = i;
+    }
+    if (first >= 0) zone[first] = PETSC_TRUE;
+  }
+}
+
 /*
    AbutContactModelSolve_Private - The contact problem of the model, from the state of the bodies
 
@@ -164,9 +183,9 @@ PetscErrorCode AbutContactModelSolve_Private(AbutContactModel model, const Petsc
                                              PetscInt *loose, PetscBool *solved)
 {
   const PetscInt n = model->n;
-  PetscBool     *zone, any = PETSC_FALSE, rescued = PETSC_FALSE;
+  PetscBool     *zone, any = PETSC_FALSE;
   PetscReal     *g;
-  PetscInt       least = n + 1, patience = ABUT_PATIENCE, wrong = 1;
+  PetscInt       least = n + 1, patience = ABUT_PATIENCE, wrong = 1, rescues = 0;
 
   PetscFunctionBegin;
   if (model->friction) {
@@ -185,10 +204,10 @@ PetscErrorCode AbutContactModelSolve_Private(AbutContactModel model, const Petsc
   *loose = -1;
   for (PetscInt it = 0; wrong && it < 100 + 10 * n; ++it) {
     PetscCall(AbutContactModelZone_Private(model, zone, d, g, a, loose));
-    if (*loose >= 0 && rescued) break;
-    if (*loose >= 0) { /* too few nodes closed to hold a body: close all, once */
+    if (*loose >= 0 && rescues == 2) break;
+    if (*loose >= 0) { /* too few nodes closed to hold a body: close all; in a hole most of these pull, and open at once */
       for (PetscInt i = 0; i < n; ++i) zone[i] = PETSC_TRUE;
-      rescued = PETSC_TRUE;
+      if (++rescues == 2) AbutContactModelFirstMet_Private(model, zone);
     } else wrong = AbutContactModelExchange_Private(model, d, g, &least, &patience, zone);
   }
   if (!wrong && model->m) {

@@ -26,7 +26,8 @@ static PetscErrorCode AbutMeshInitializePackage_Private(void)
 .  mesh - the mesh
 
    Options Database Keys:
-+  -mesh_file <part.msh>       - a gmsh file, instead of a box; shape of the cells and names of the sides are the file's
++  -mesh_file <part.msh>       - a gmsh file, instead of a box; shape of the cells and names of the sides are the file's;
+                                beside the scene file, or else in the current folder
 .  -mesh_region <name>         - physical surface of the file whose cells are the body; all cells if it is not given
 .  -mesh_curve_SIDE <curve>    - `circle xc,yc,r`, or an expression that is 0 on the side, see `AbutMeshSetCurve()`
 .  -mesh_box <x0,y0,x1,y1>     - lower left and upper right corner, in the length unit of the scene

@@ -43,7 +43,13 @@ PetscErrorCode AbutMeshSetFromOptions(AbutMesh mesh)
                  prefix, hasbox ? "box" : "cells");
   AbutCheckInput(hasfile || !hasregion, comm, "%smesh_region: there is no file whose region this is; give %smesh_file, or leave it out",
                  prefix, prefix);
-  if (hasfile) PetscCall(AbutMeshSetFile(mesh, file, hasregion ? region : NULL));
+  if (hasfile) {
+    char found[PETSC_MAX_PATH_LEN];
+
+    PetscCall(PetscSNPrintf(key, sizeof(key), "%smesh_file", prefix));
+    PetscCall(AbutFileFind(comm, key, file, found, sizeof(found)));
+    PetscCall(AbutMeshSetFile(mesh, found, hasregion ? region : NULL));
+  }
   AbutCheckInput(!mesh->first || !hasshape || shape == (PetscInt)mesh->shape, comm,
                  "%smesh_shape: %s, but the cells of %s are %ss; leave it out", prefix, AbutShapeNames[shape], mesh->first->path,
                  AbutShapeNames[mesh->shape]);

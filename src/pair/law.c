@@ -59,9 +59,8 @@ PetscErrorCode AbutPairComputeForce(AbutPair pair, const PetscReal p[], PetscRea
       for (PetscInt side = 0; side < 2; ++side)
         for (PetscInt j = 0; j <= pair->order[side]; ++j)
           for (PetscInt d = 0; d < pair->components; ++d)
-            force[side][pair->components * (pair->order[side] * seg->element[side] + j) + d] += AbutSegmentNormal_Private(pair, seg, side,
-                                                                                                                          d) *
-                                                                                                seg->M[side][i][j] *
+            force[side][pair->components * (pair->order[side] * seg->element[side] + j) + d] += AbutSegmentWeight_Private(pair, g, side, d,
+                                                                                                                          i, j) *
                                                                                                 p[pair->order[0] * seg->element[0] + i];
   }
   if (pair->friction) PetscCall(AbutPairFrictionForce_Private(pair, p + pair->n[pair->which], force));

@@ -108,21 +108,23 @@ static PetscErrorCode AbutPairDualAxial_Private(AbutPair pair, PetscInt e, AbutD
 static PetscErrorCode AbutPairSegment_Private(AbutPair pair, PetscInt e, PetscInt k, AbutDual A, PetscReal from, PetscReal to)
 {
   const PetscInt n = pair->order[0] + PetscMax(pair->order[1], 0) + 2, first = pair->order[0] * e;
-  PetscReal      z[2 * ABUT_ORDER_MAX + 2], w[2 * ABUT_ORDER_MAX + 2], phi[2][ABUT_SIDE_NODES_MAX], at[2], x[2], f, thickness = 1.;
-  AbutSegment   *g;
+  PetscReal    z[2 * ABUT_ORDER_MAX + 2], w[2 * ABUT_ORDER_MAX + 2], phi[2][ABUT_SIDE_NODES_MAX], at[2], x[2], normal[2], f, thickness = 1.;
+  AbutSegment *g;
 
   PetscFunctionBegin;
   if (pair->nsegments == pair->room) {
     pair->room = 2 * pair->room + 16;
     PetscCall(PetscRealloc(pair->room * sizeof(*pair->segment), &pair->segment));
+    if (pair->components > 1) PetscCall(PetscRealloc(pair->room * sizeof(*pair->vector), &pair->vector));
   }
   g = &pair->segment[pair->nsegments++];
   PetscCall(PetscMemzero(g, sizeof(*g)));
+  if (pair->vector) PetscCall(PetscMemzero(pair->vector[pair->nsegments - 1], sizeof(*pair->vector)));
   g->element[0] = e;
   g->element[1] = k;
   PetscCall(PetscDTGaussQuadrature(n, from, to, z, w));
   for (PetscInt q = 0; q < n; ++q) {
-    PetscCall(AbutPairFace_Private(pair, g->element, z[q], at, g->normal, &f));
+    PetscCall(AbutPairFace_Private(pair, g->element, z[q], at, normal, &f));
     for (PetscInt side = 0; side < 2 && pair->order[side] > 0; ++side)
       PetscCall(AbutEvaluateLobatto(pair->order[side], at[side], phi[side], NULL));
     if (pair->axial) {
@@ -141,9 +143,12 @@ static PetscErrorCode AbutPairSegment_Private(AbutPair pair, PetscInt e, PetscIn
       pair->F[first + i] += psi * f;
       for (PetscInt side = 0; side < 2; ++side)
         for (PetscInt j = 0; j <= pair->order[side]; ++j) g->M[side][i][j] += psi * phi[side][j];
+      for (PetscInt side = 0; side < 2 && pair->vector; ++side)
+        for (PetscInt d = 0; d < 2; ++d)
+          for (PetscInt j = 0; j <= pair->order[side]; ++j)
+            pair->vector[pair->nsegments - 1][side][d][i][j] += (side ? -normal[d] : normal[d]) * psi * phi[side][j];
     }
   }
-  PetscCall(AbutPairFace_Private(pair, g->element, 0.5 * (from + to), at, g->normal, &f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -261,6 +266,7 @@ PetscErrorCode AbutPairMortarReset_Private(AbutPair pair)
   PetscFunctionBegin;
   PetscCall(AbutPairProjectReset_Private(pair));
   PetscCall(PetscFree(pair->segment));
+  PetscCall(PetscFree(pair->vector));
   if (pair->length != pair->D) PetscCall(PetscFree(pair->length));
   PetscCall(PetscFree3(pair->D, pair->F, pair->work));
   pair->nsegments = pair->room = 0;
@@ -298,7 +304,7 @@ PetscErrorCode AbutPairComputePenetration(AbutPair pair, const PetscReal u1[], c
       for (PetscInt side = 0; side < 2; ++side)
         for (PetscInt j = 0; j <= pair->order[side]; ++j)
           for (PetscInt d = 0; d < pair->components; ++d)
-            g[pair->order[0] * seg->element[0] + i] += seg->M[side][i][j] * AbutSegmentNormal_Private(pair, seg, side, d) *
+            g[pair->order[0] * seg->element[0] + i] += AbutSegmentWeight_Private(pair, k, side, d, i, j) *
                                                        trace[side][pair->components * (pair->order[side] * seg->element[side] + j) + d];
   }
   for (PetscInt i = 0; i < n; ++i) g[i] = pair->D[i] > 0. ? g[i] / pair->D[i] : 0.;

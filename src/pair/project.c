@@ -19,6 +19,20 @@ static PetscBool AbutPairIsStraight_Private(AbutPair pair)
                      PetscAbsReal(own->normal[0] + other->normal[0]) + PetscAbsReal(own->normal[1] + other->normal[1]) < 1e-9);
 }
 
+/* The direction at a vertex between the elements e-1 and e: the mean of their normals, that of the longer one, which is further from it,
+   counting less. On a circle it is the radius. */
+static void AbutPairVertexDirection_Private(AbutPair pair, PetscInt e, PetscReal d[2])
+{
+  const AbutSide  *m = pair->nodes[pair->which];
+  const PetscReal *s = pair->place[0] + m->order * e, *before = m->normal + 2 * (e - 1), *behind = m->normal + 2 * e;
+  const PetscReal  t = (s[0] - s[-m->order]) / (s[m->order] - s[-m->order]);
+  PetscReal        size;
+
+  for (PetscInt i = 0; i < 2; ++i) d[i] = (1. - t) * before[i] + t * behind[i];
+  size = PetscSqrtReal(d[0] * d[0] + d[1] * d[1]);
+  for (PetscInt i = 0; i < 2; ++i) d[i] /= size;
+}
+
 /* At an end of the side the direction is such that the normal of the last element is the mean of those at its ends: on an arc that ends in
    a plane of symmetry it lies in the plane */
 static PetscErrorCode AbutPairDirections_Private(AbutPair pair)
@@ -29,7 +43,7 @@ static PetscErrorCode AbutPairDirections_Private(AbutPair pair)
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(2 * (n + 1), &d));
-  for (PetscInt v = 1; v < n; ++v) PetscCall(AbutSideGetNodeNormal(m, m->order * v, d + 2 * v));
+  for (PetscInt v = 1; v < n; ++v) AbutPairVertexDirection_Private(pair, v, d + 2 * v);
   for (PetscInt end = 0; end < 2; ++end) {
     const PetscReal *normal = m->normal + 2 * (end ? n - 1 : 0), *next = n > 1 ? d + 2 * (end ? n - 1 : 1) : normal;
     const PetscReal  dot = normal[0] * next[0] + normal[1] * next[1];
@@ -61,23 +75,26 @@ static PetscReal AbutPairFoot_Private(AbutPair pair, PetscInt e, const PetscReal
   return b + root > 0. ? PetscMin(1., PetscMax(0., -2. * c / (b + root))) : 0.;
 }
 
-/* The places of the other side's nodes, which run the other way: one walk. Those that no element sees lie beyond the ends. */
+/* The places of the other side's nodes, which run the other way: one walk, in which every node is compared with what is near it alone, for
+   on a long arc the directions at the far end point anywhere. Nodes before the first element, or behind the last one, see none. */
 static void AbutPairSee_Private(AbutPair pair)
 {
   const AbutSide  *m = pair->nodes[pair->which], *o = pair->nodes[!pair->which];
-  const PetscReal *s = pair->place[0];
-  const PetscInt   n = (m->n - 1) / m->order;
-  PetscInt         e = 0;
+  const PetscReal *s      = pair->place[0];
+  const PetscInt   n      = (m->n - 1) / m->order;
+  PetscInt         e      = 0;
+  PetscBool        before = PETSC_TRUE;
 
   for (PetscInt i = o->n - 1; i >= 0; --i) {
-    const PetscReal *y = o->x + 2 * i, start = AbutPairAhead_Private(pair, 0, 0., y), end = AbutPairAhead_Private(pair, n - 1, 1., y);
+    const PetscReal *y = o->x + 2 * i, start = before ? AbutPairAhead_Private(pair, 0, 0., y) : 0.;
+    PetscReal        end;
 
-    if (start > 0.) pair->place[1][i] = -start;
+    before = (PetscBool)(start > 0.);
+    while (!before && e + 1 < n && AbutPairAhead_Private(pair, e, 1., y) < 0.) ++e;
+    end = before ? 0. : AbutPairAhead_Private(pair, e, 1., y);
+    if (before) pair->place[1][i] = -start;
     else if (end < 0.) pair->place[1][i] = s[m->n - 1] - end;
-    else {
-      while (e + 1 < n && AbutPairAhead_Private(pair, e, 1., y) < 0.) ++e;
-      pair->place[1][i] = s[m->order * e] + AbutPairFoot_Private(pair, e, y) * (s[m->order * (e + 1)] - s[m->order * e]);
-    }
+    else pair->place[1][i] = s[m->order * e] + AbutPairFoot_Private(pair, e, y) * (s[m->order * (e + 1)] - s[m->order * e]);
   }
 }
 
@@ -104,11 +121,11 @@ PetscErrorCode AbutPairProject_Private(AbutPair pair)
     if (o) AbutPairPlaceOnChord_Private(m, o, pair->place[1]);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(AbutPairDirections_Private(pair));
   pair->place[0][0] = 0.;
   for (PetscInt i = 1; i < m->n; ++i)
     pair->place[0][i] = pair->place[0][i - 1] +
                         PetscSqrtReal(PetscSqr(m->x[2 * i] - m->x[2 * i - 2]) + PetscSqr(m->x[2 * i + 1] - m->x[2 * i - 1]));
+  PetscCall(AbutPairDirections_Private(pair));
   if (o) AbutPairSee_Private(pair);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -139,23 +156,36 @@ void AbutPairPointAt_Private(AbutPair pair, PetscReal place, PetscReal x[2])
   for (PetscInt d = 0; d < 2; ++d) x[d] = (1. - t) * m->x[2 * low + d] + t * m->x[2 * high + d];
 }
 
-/* The distance of two points that see each other along a normal, as if they lay on the curves of their sides and not on polygons */
+/* The point of a side's curve that is nearest to one of its polygon */
+static PetscErrorCode AbutPairOnCurve_Private(AbutPair pair, PetscInt s, const PetscReal x[2], PetscReal foot[2])
+{
+  AbutMesh mesh;
+
+  PetscFunctionBegin;
+  PetscCall(AbutBodyGetMesh(pair->body[s], &mesh));
+  PetscCall(AbutMeshGetCurvePoint(mesh, pair->side[s], x, foot));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The gap of a point of the pressure side, which looks along a normal, as if it and the point y of the other side lay on the curves of their
+   sides and not on polygons: from order 2 on the nodes between vertices would else stand back by what an arc is above its chord */
 static PetscErrorCode AbutPairCurvedGap_Private(AbutPair pair, const PetscReal x[2], const PetscReal y[2], const PetscReal normal[2],
                                                 PetscReal *gap)
 {
-  const PetscReal *at[2] = {x, y};
+  PetscReal own[2], other[2];
 
   PetscFunctionBegin;
-  *gap = 0.;
-  for (PetscInt k = 0; k < 2; ++k) {
-    const PetscInt s = k ? !pair->which : pair->which;
-    AbutMesh       mesh;
-    PetscReal      foot[2];
-
-    PetscCall(AbutBodyGetMesh(pair->body[s], &mesh));
-    PetscCall(AbutMeshGetCurvePoint(mesh, pair->side[s], at[k], foot));
-    for (PetscInt d = 0; d < 2; ++d) *gap += (k ? 1. : -1.) * foot[d] * normal[d];
+  PetscCall(AbutPairOnCurve_Private(pair, pair->which, x, own));
+  if (!pair->obstacle && (pair->gap || pair->straight)) {
+    PetscCall(AbutPairGetGap(pair, own, gap));
+    PetscFunctionReturn(PETSC_SUCCESS);
   }
+  if (pair->obstacle) PetscCall(AbutPairObstacleGap_Private(pair, own, normal, gap));
+  else {
+    PetscCall(AbutPairOnCurve_Private(pair, !pair->which, y, other));
+    *gap = (other[0] - own[0]) * normal[0] + (other[1] - own[1]) * normal[1];
+  }
+  PetscCall(AbutPairCloseGap_Private(pair, own, gap));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -191,12 +221,6 @@ PetscErrorCode AbutPairFace_Private(AbutPair pair, const PetscInt element[2], Pe
       y[1]  = p[1] + share * d[1];
     }
   }
-  if (!pair->obstacle && (pair->gap || pair->straight)) {
-    PetscCall(AbutPairGetGap(pair, x, gap));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  if (pair->obstacle) PetscCall(AbutPairObstacleGap_Private(pair, x, normal, gap));
-  else PetscCall(AbutPairCurvedGap_Private(pair, x, y, normal, gap));
-  PetscCall(AbutPairCloseGap_Private(pair, x, gap));
+  PetscCall(AbutPairCurvedGap_Private(pair, x, y, normal, gap));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -72,11 +72,13 @@ static PetscErrorCode AbutExpressionParse_Private(AbutExpression e)
 /* Every rank reads the file: it is small, and a point is then looked up without messages */
 static PetscErrorCode AbutExpressionReadPoints_Private(AbutExpression e)
 {
-  FILE    *f = fopen(e->text, "r");
-  char     line[512];
+  FILE    *f;
+  char     line[512], path[PETSC_MAX_PATH_LEN];
   PetscInt room = 0;
 
   PetscFunctionBegin;
+  PetscCall(AbutFileFind(e->comm, e->key, e->text, path, sizeof(path)));
+  f = fopen(path, "r");
   AbutCheckInput(f, e->comm, "%s: no file \"%s\"; give the path of a file with lines x,y,value", e->key, e->text);
   while (fgets(line, sizeof(line), f)) {
     double v[3];
@@ -105,7 +107,7 @@ static PetscErrorCode AbutExpressionReadPoints_Private(AbutExpression e)
    Input Parameters:
 +  comm - the communicator, for messages
 .  key  - the key the text comes from, for messages
--  text - the text; `.csv` at its end means a file of lines `x,y,value`
+-  text - the text; `.csv` at its end means a file of lines `x,y,value`, found by `AbutFileFind()`
 
    Output Parameter:
 .  expression - the function

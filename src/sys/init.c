@@ -56,12 +56,12 @@ static PetscErrorCode AbutInsertSceneFile_Private(const char file[])
 
 static char **AbutArguments; /* without the scene files; PETSc keeps pointing into them until it ends */
 
-/* Of a key that no scene file brought */
-static const char *AbutWhereFrom_Private(const char key[])
+/* Is a key on the command line? */
+PetscBool AbutIsArgument_Private(const char key[])
 {
   for (char **word = AbutArguments; word && *word; ++word)
-    if (**word == '-' && !strcasecmp(*word + 1, key)) return "command line";
-  return "PETSC_OPTIONS or .petscrc";
+    if (**word == '-' && !strcasecmp(*word + 1, key)) return PETSC_TRUE;
+  return PETSC_FALSE;
 }
 
 /* Scene files first, then the command line, wherever on it the file stands: the command line wins */
@@ -86,13 +86,15 @@ static PetscErrorCode AbutInsertScene_Private(int nfiles, const char *const file
   for (int i = 0; i < nfiles; ++i) {
     PetscCall(AbutInsertSceneFile_Private(files[i]));
     PetscCall(AbutSourceFile_Private(files[i]));
+    PetscCall(AbutFindBeside_Private(files[i]));
   }
   for (PetscInt i = 0; i < n; ++i) {
     char key[PETSC_MAX_OPTION_NAME];
 
     PetscCall(PetscSNPrintf(key, sizeof(key), "-%s", names[i]));
     PetscCall(PetscOptionsSetValue(NULL, key, values[i]));
-    PetscCall(AbutSourceGiven_Private(names[i], values[i], AbutWhereFrom_Private(names[i])));
+    PetscCall(AbutSourceGiven_Private(names[i], values[i],
+                                      AbutIsArgument_Private(names[i]) ? "command line" : "PETSC_OPTIONS or .petscrc"));
     PetscCall(PetscFree(names[i]));
     PetscCall(PetscFree(values[i]));
   }

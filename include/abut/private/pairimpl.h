@@ -14,7 +14,6 @@ typedef enum {
    Both sides are pressed along the one normal, so that the forces on them balance to round-off. */
 typedef struct {
   PetscInt  element[2];
-  PetscReal normal[2]; /* outward of the pressure side */
   PetscReal M[2][ABUT_SIDE_NODES_MAX][ABUT_SIDE_NODES_MAX];
 } AbutSegment;
 
@@ -25,6 +24,10 @@ typedef struct {
   PetscInt   n;         /* the same as they were kept, along the first side; 0: never */
   PetscReal *x, *kept;
 } *AbutFriction;
+
+/* The same with the components of the outward normal of side s, point by point: [s][d][i][k]. A constant normal would leave the slip of a side
+   across it a part of the gap, of first order where elements of two lengths meet. */
+typedef PetscReal AbutSegmentVector[2][2][ABUT_SIDE_NODES_MAX][ABUT_SIDE_NODES_MAX];
 
 struct _p_AbutPair {
   PETSCHEADER(int);
@@ -38,29 +41,29 @@ struct _p_AbutPair {
   AbutPressureSide pressureside;
 
   /* of the present meshes */
-  PetscInt        generation[2];
-  PetscInt        which;      /* the side that carries the pressures */
-  PetscInt        n[2];       /* nodes of both sides */
-  PetscInt        order[2];   /* of the displacements of the pressure side, and of the other one: -1 if there is none */
-  PetscBool       straight;   /* both sides are, and opposite to each other */
-  PetscInt        components; /* of a trace at a node: 1 the normal displacement, 2 the vector */
-  PetscReal      *place[2];   /* of the nodes of the pressure side, and of the other one, along the former: distances from its first node */
-  PetscReal      *direction;  /* [2*(elements+1)] where they are curved: outward at the vertices of the pressure side */
-  PetscInt        nsegments, room;
-  AbutSegment    *segment;
-  PetscReal       overlap[2]; /* the part of the pressure side that the other one faces: distances from its first node */
-  PetscReal      *D, *F;      /* [n[which]] integrals of psi_i and of psi_i times the gap; D = 0: the node carries no pressure */
-  PetscReal      *length;     /* [n[which]] what D is along the side: D itself, but for bodies of revolution */
-  PetscBool       axial;      /* they are: integrals weigh the circumference */
-  PetscReal      *work;       /* [n[which]] */
-  const AbutSide *nodes[2];
+  PetscInt     generation[2];
+  PetscInt     which;      /* the side that carries the pressures */
+  PetscInt     n[2];       /* nodes of both sides */
+  PetscInt     order[2];   /* of the displacements of the pressure side, and of the other one: -1 if there is none */
+  PetscBool    straight;   /* both sides are, and opposite to each other */
+  PetscInt     components; /* of a trace at a node: 1 the normal displacement, 2 the vector */
+  PetscReal   *place[2];   /* of the nodes of the pressure side, and of the other one, along the former: distances from its first node */
+  PetscReal   *direction;  /* [2*(elements+1)] where they are curved: outward at the vertices of the pressure side */
+  PetscInt     nsegments, room;
+  AbutSegment *segment;
+  AbutSegmentVector *vector;     /* of the segments where traces are vectors, NULL where not */
+  PetscReal          overlap[2]; /* the part of the pressure side that the other one faces: distances from its first node */
+  PetscReal         *D, *F;      /* [n[which]] integrals of psi_i and of psi_i times the gap; D = 0: the node carries no pressure */
+  PetscReal         *length;     /* [n[which]] what D is along the side: D itself, but for bodies of revolution */
+  PetscBool          axial;      /* they are: integrals weigh the circumference */
+  PetscReal         *work;       /* [n[which]] */
+  const AbutSide    *nodes[2];
 };
 
-/* Component d of the outward normal of a side on a segment, where traces are vectors: of the pressure side or of the other one */
-static inline PetscReal AbutSegmentNormal_Private(AbutPair pair, const AbutSegment *segment, PetscInt side, PetscInt d)
+/* What component d of node k on side s, in segment g, adds to the penetration of node i of the pressure side */
+static inline PetscReal AbutSegmentWeight_Private(AbutPair pair, PetscInt g, PetscInt s, PetscInt d, PetscInt i, PetscInt k)
 {
-  if (pair->components == 1) return 1.;
-  return side ? -segment->normal[d] : segment->normal[d];
+  return pair->components == 1 ? pair->segment[g].M[s][i][k] : pair->vector[g][s][d][i][k];
 }
 
 PETSC_INTERN PetscErrorCode AbutPairCheckFacing_Private(AbutPair);

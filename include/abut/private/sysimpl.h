@@ -9,6 +9,10 @@ PETSC_INTERN PetscErrorCode AbutSourceFile_Private(const char[]);
 PETSC_INTERN PetscErrorCode AbutSourceGiven_Private(const char[], const char[], const char[]);
 PETSC_INTERN PetscErrorCode AbutSourceUnless_Private(const char[], const char[]);
 
+PETSC_INTERN PetscBool AbutIsArgument_Private(const char[]);
+/* A scene file, beside which AbutFileFind() looks */
+PETSC_INTERN PetscErrorCode AbutFindBeside_Private(const char[]);
+
 /* What PETSc says of a bad option, as one line. AbutCallOptions(comm, what, Call(...)): a bad value that Call() meets is reported in one
    line that begins with `what`; a bad input that the call itself reports keeps its own line. */
 #define ABUT_MESSAGE 512
