@@ -34,6 +34,7 @@ PETSC_EXTERN PetscErrorCode AbutAdaptorGetLevels(AbutAdaptor, PetscInt *, PetscI
 PETSC_EXTERN PetscErrorCode AbutAdaptorGetMaxUnknowns(AbutAdaptor, PetscInt *);
 PETSC_EXTERN PetscErrorCode AbutAdaptorFollows(AbutAdaptor, PetscInt, PetscBool *);
 PETSC_EXTERN PetscErrorCode AbutAdaptorSettles(AbutAdaptor, PetscBool *);
+PETSC_EXTERN PetscErrorCode AbutAdaptorGetCoarsening(AbutAdaptor, PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutAdaptorGetPeak(AbutAdaptor, PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutAdaptorGetBodies(AbutAdaptor, PetscInt *, const char *const *[]);
 PETSC_EXTERN PetscErrorCode AbutAdaptorMark(AbutAdaptor, AbutBody, Vec, const PetscBool[], PetscBool[], PetscInt *, AbutAdaptVerdict *);

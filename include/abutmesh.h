@@ -9,8 +9,9 @@
    Level: intermediate
 
    Notes:
-   Quadrilaterals are held by a p4est quadtree forest (refinement, 2:1 balance across sides, partition) and converted to a `DMPLEX` with a
-   tree; triangles are a `DMPLEX` refined by `DMPLEXREFINESBR`. Every cell is on exactly one rank (no overlap); a rank may be without cells.
+   The first mesh is the grid of a box or comes from a gmsh file. Quadrilaterals are held by a p4est quadtree forest (refinement, 2:1
+   balance across sides, partition) and converted to a `DMPLEX` with a tree; triangles are a `DMPLEX` refined by `DMPLEXREFINESBR`. Every
+   cell is on exactly one rank (no overlap); a rank may be without cells.
 
 .seealso: `AbutMeshCreate()`, `AbutMeshAdapt()`, `AbutMeshGetTopology()`, `AbutBody`
 S*/

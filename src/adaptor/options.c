@@ -285,3 +285,26 @@ PetscErrorCode AbutAdaptorGetPeak(AbutAdaptor adaptor, PetscReal *tolerance)
   *tolerance = adaptor->peak;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/*@
+   AbutAdaptorGetCoarsening - The part of the bound for refinement below which cells may be merged
+
+   Not Collective
+
+   Input Parameter:
+.  adaptor - the adaptor
+
+   Output Parameter:
+.  part - what `-adaptor_coarsen` says; 0: no cell is merged
+
+   Level: developer
+
+.seealso: `AbutMeshSetCoarsening()`, `AbutAdaptorSetFromOptions()`
+@*/
+PetscErrorCode AbutAdaptorGetCoarsening(AbutAdaptor adaptor, PetscReal *part)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(adaptor, ABUTADAPTOR_CLASSID, 1);
+  *part = adaptor->coarsen;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

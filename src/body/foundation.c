@@ -103,18 +103,26 @@ PetscErrorCode AbutBodyAssembleFoundation_Private(AbutBody body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+#define ABUT_ALONG 1e-9 /* of the length of a segment: what is off an axis by less runs along it */
+
 /* Whether a component of the displacement of a whole side is prescribed or resisted by springs */
 PetscErrorCode AbutBodyHoldsSide_Private(AbutBody body, PetscInt side, PetscInt component, PetscBool *holds)
 {
-  PetscReal ends[4], normal[2], k[2], C[4];
+  const PetscReal *end;
+  PetscReal        k[2];
+  PetscInt         n;
 
   PetscFunctionBegin;
   *holds = (PetscBool)(body->condition[side][component].type == ABUT_DISPLACEMENT);
   if (*holds || !body->hooks) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(AbutMeshGetSideEnds(body->mesh, side, ends, normal));
+  PetscCall(AbutMeshGetSideSegments(body->mesh, side, &n, &end));
   PetscCall(AbutBodyGetFoundation(body, side, &k[0], &k[1]));
-  AbutSprings_Private(k, normal, C);
-  *holds = (PetscBool)(C[3 * component] > 0.);
+  *holds = (PetscBool)(k[0] > 0. || k[1] > 0.);
+  for (PetscInt i = 0; i < n && !(k[0] > 0. && k[1] > 0.); ++i) { /* one stiffness holds what is along it, on all of the side */
+    const PetscReal d = end[4 * i + 2 + !component] - end[4 * i + !component], e = end[4 * i + 2 + component] - end[4 * i + component];
+
+    if (k[0] > 0. ? PetscAbsReal(e) > ABUT_ALONG * PetscAbsReal(d) : PetscAbsReal(d) > ABUT_ALONG * PetscAbsReal(e)) *holds = PETSC_FALSE;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -20,15 +20,19 @@ static PetscErrorCode AbutEffectCheck_Side(AbutEffect effect, AbutBody body)
 {
   AbutEffect_Side *e;
   AbutMesh         mesh;
-  PetscReal        ends[4], normal[2], value;
+  const PetscReal *segment;
+  PetscInt         n, samples;
+  PetscReal        value;
 
   PetscFunctionBegin;
   PetscCall(AbutEffectGetData(effect, &e));
   PetscCall(AbutEffectCheckSide(effect, body, e->side, e->contact));
   PetscCall(AbutBodyGetMesh(body, &mesh));
-  PetscCall(AbutMeshGetSideEnds(mesh, e->side, ends, normal));
-  for (PetscInt i = 0; i < ABUT_SAMPLES; ++i) {
-    const PetscReal z = (i + 0.5) / ABUT_SAMPLES, x[2] = {(1. - z) * ends[0] + z * ends[2], (1. - z) * ends[1] + z * ends[3]};
+  PetscCall(AbutMeshGetSideSegments(mesh, e->side, &n, &segment));
+  samples = PetscMax(2, ABUT_SAMPLES / n);
+  for (PetscInt i = 0; i < n * samples; ++i) {
+    const PetscReal *ends = segment + 4 * (i / samples), z = (i % samples + 0.5) / samples;
+    const PetscReal  x[2] = {(1. - z) * ends[0] + z * ends[2], (1. - z) * ends[1] + z * ends[3]};
 
     PetscCall(AbutExpressionEvaluate(e->value, x, &value));
   }

@@ -45,6 +45,22 @@ static PetscErrorCode AbutEffectSetFromOptions_Spring(AbutEffect effect, AbutOpt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The component of the displacement that runs along a side, -1 if it runs along no axis */
+static PetscErrorCode AbutSideGetAxis_Private(AbutMesh mesh, PetscInt side, PetscInt *along)
+{
+  PetscReal ends[4], normal[2];
+  PetscBool straight;
+
+  PetscFunctionBegin;
+  *along = -1;
+  PetscCall(AbutMeshIsSideStraight(mesh, side, &straight));
+  if (!straight) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AbutMeshGetSideEnds(mesh, side, ends, normal));
+  for (PetscInt d = 0; d < 2; ++d)
+    if (PetscAbsReal(normal[d]) <= 1e-9) *along = d;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Springs have something to do where they may move, and what they leave free must be a move along an axis */
 static PetscErrorCode AbutEffectCheck_Spring(AbutEffect effect, AbutBody body)
 {
@@ -52,25 +68,22 @@ static PetscErrorCode AbutEffectCheck_Spring(AbutEffect effect, AbutBody body)
   const char        *name = ((PetscObject)effect)->name, *bodyname = ((PetscObject)body)->name, *side;
   AbutEffect_Spring *e;
   AbutMesh           mesh;
-  PetscReal          ends[4], normal[2];
-  PetscInt           along;
+  PetscInt           along = -1;
 
   PetscFunctionBegin;
   PetscCall(AbutEffectGetData(effect, &e));
   PetscCall(AbutEffectCheckSide(effect, body, e->side, PETSC_FALSE));
   PetscCall(AbutBodyGetMesh(body, &mesh));
   PetscCall(AbutMeshGetSideName(mesh, e->side, &side));
-  PetscCall(AbutMeshGetSideEnds(mesh, e->side, ends, normal));
-  along = PetscAbsReal(normal[0]) > PetscAbsReal(normal[1]) ? 1 : 0; /* the component along the side */
-  AbutCheckInput((e->stiffness[0] > 0. && e->stiffness[1] > 0.) || normal[along] == 0., comm,
+  PetscCall(AbutSideGetAxis_Private(mesh, e->side, &along));
+  AbutCheckInput((e->stiffness[0] > 0. && e->stiffness[1] > 0.) || along >= 0, comm,
                  "%s_effect_%s: missing; %s of %s runs along no axis, there give both stiffnesses", name,
                  e->stiffness[0] > 0. ? "tangential" : "normal", side, bodyname);
-  for (PetscInt d = 0; d < 2 && normal[along] == 0.; ++d) {
-    const PetscReal   k = e->stiffness[d == along ? 1 : 0];
+  for (PetscInt d = 0; d < 2 && along >= 0; ++d) {
     AbutConditionType type;
 
     PetscCall(AbutBodyGetCondition(body, e->side, d, &type));
-    AbutCheckInput(k == 0. || type != ABUT_DISPLACEMENT, comm,
+    AbutCheckInput(e->stiffness[d == along] == 0. || type != ABUT_DISPLACEMENT, comm,
                    "%s_effect_%s: u%d of %s of %s is prescribed, so there these springs have nothing to do; leave out one of the two", name,
                    d == along ? "tangential" : "normal", (int)d + 1, side, bodyname);
   }

@@ -23,6 +23,8 @@
    may come to lie the other way. Every rank holds all vertices while it is made. Where the vertices that stay cannot be had in this way
    nothing is merged: of a grid whose cells are more than 1.7 times as long as wide some triangles stay finer than marked.
 
+   Triangles of a file (`AbutMeshSetFile()`) are not merged.
+
    A cell that was made by a merge and is split again stays split, and a vertex goes only once: so no sequence of marks splits and merges
    for ever.
 
@@ -35,6 +37,8 @@ PetscErrorCode AbutMeshSetCoarsening(AbutMesh mesh, const PetscBool marks[])
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(mesh, ABUTMESH_CLASSID, 1);
+  PetscCheck(!marks || !mesh->first || mesh->shape == ABUT_QUAD, PetscObjectComm((PetscObject)mesh), PETSC_ERR_SUP,
+             "Triangles of a file are not merged");
   PetscCall(PetscFree(mesh->coarsen));
   PetscCall(PetscMalloc1(t->ncells + 1, &mesh->coarsen)); /* not NULL on a rank without cells */
   for (PetscInt c = 0; c < t->ncells; ++c) {

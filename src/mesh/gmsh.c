@@ -188,6 +188,7 @@ static PetscErrorCode AbutGmshElements2_Private(AbutGmshFile *f)
       if (list && !AbutGmshFailed_Private(r)) PetscCall(AbutGmshAppend_Private(list, &element));
     }
   }
+  AbutGmshExpect_Private(r, "$EndElements");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -215,6 +216,20 @@ static PetscErrorCode AbutGmshElements4_Private(AbutGmshFile *f)
       if (list && !AbutGmshFailed_Private(r)) PetscCall(AbutGmshAppend_Private(list, &element));
     }
   }
+  AbutGmshExpect_Private(r, "$EndElements");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The word at which the file is read; empty where it ends */
+static PetscErrorCode AbutGmshWord_Private(AbutGmshReader *r, size_t len, char word[])
+{
+  size_t n = 0;
+
+  PetscFunctionBegin;
+  while (r->at < r->end && *r->at <= ' ') ++r->at;
+  while (r->at + n < r->end && r->at[n] > ' ' && n < len - 1) ++n;
+  memcpy(word, r->at, n);
+  word[n] = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -229,35 +244,27 @@ PetscErrorCode AbutGmshSections_Private(AbutGmshFile *f)
   AbutGmshExpect_Private(r, "$MeshFormat");
   if (!AbutGmshFailed_Private(r)) AbutGmshFormat_Private(r);
   while (!AbutGmshFailed_Private(r)) {
-    const char *word  = r->at, *end;
-    PetscInt    which = 0;
-    char        close[ABUT_GMSH_TEXT_MAX];
+    PetscInt which = 0;
+    char     word[ABUT_GMSH_TEXT_MAX], end[ABUT_GMSH_TEXT_MAX + 3];
 
-    while (word < r->end && *word <= ' ') ++word;
-    r->at = word;
-    if (word == r->end) break;
-    for (end = word; end < r->end && *end > ' '; ++end) { }
-    if (*word != '$' || (size_t)(end - word) > sizeof(close) - 8) {
-      AbutGmshFail_Private(r, "expected the beginning of a section");
-      break;
-    }
-    while (which < 4 && ((size_t)(end - word) != strlen(section[which]) || strncmp(word, section[which], (size_t)(end - word)))) ++which;
+    PetscCall(AbutGmshWord_Private(r, sizeof(word), word));
+    if (!word[0]) break;
+    while (which < 4 && strcmp(word, section[which])) ++which;
+    if (word[0] != '$') AbutGmshFail_Private(r, "expected the beginning of a section");
+    else if (which < 4 && has[which]) AbutGmshFail_Private(r, "a section is there twice");
+    if (AbutGmshFailed_Private(r)) break;
+    r->at += strlen(word);
     if (which == 4) { /* where binary numbers follow, only its end can be looked for */
-      PetscCall(PetscSNPrintf(close, sizeof(close), "$End%.*s", (int)(end - word - 1), word + 1));
-      r->at = end;
-      AbutGmshSkipTo_Private(r, close);
+      PetscCall(PetscSNPrintf(end, sizeof(end), "$End%s", word + 1));
+      AbutGmshSkipTo_Private(r, end);
       continue;
     }
-    r->at = end + (r->binary && end < r->end); /* and its line feed */
-    if (has[which]) AbutGmshFail_Private(r, "a section is there twice");
     has[which] = PETSC_TRUE;
+    if (r->binary && r->at < r->end) ++r->at; /* the line feed */
     if (which == 0) PetscCall(AbutGmshNames_Private(f));
     else if (which == 1) PetscCall(AbutGmshEntities_Private(f));
     else if (which == 2) PetscCall(AbutGmshNodes_Private(f));
-    else {
-      PetscCall(r->version == 2 ? AbutGmshElements2_Private(f) : AbutGmshElements4_Private(f));
-      AbutGmshExpect_Private(r, "$EndElements");
-    }
+    else PetscCall((r->version == 2 ? AbutGmshElements2_Private : AbutGmshElements4_Private)(f));
   }
   if (!has[2] || !has[3]) AbutGmshFail_Private(r, "the file is cut off: it has no $Nodes or no $Elements");
   PetscFunctionReturn(PETSC_SUCCESS);

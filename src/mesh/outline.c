@@ -192,56 +192,65 @@ static PetscErrorCode AbutOutlinePieces_Private(const AbutGmsh *g, PetscInt *pie
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The segments of every side, piece after piece; a side that closes on itself begins at its lowest, then leftmost, vertex */
+/* The vertex at the other end of the side that begins at corner i */
+static PetscInt AbutOutlineNext_Private(const AbutGmsh *g, PetscInt i)
+{
+  return g->cell[i / g->corners * g->corners + (i + 1) % g->corners];
+}
+
+/* Where the next piece of a side begins: at a vertex where another side ends, if there is one left, the lowest, then leftmost; -1: none */
+static PetscInt AbutOutlineBegin_Private(const AbutGmsh *g, const PetscInt cellside[], const PetscInt leaving[], const PetscInt entering[],
+                                         const PetscBool used[], PetscInt side)
+{
+  PetscInt  begin = -1;
+  PetscBool open  = PETSC_FALSE;
+
+  for (PetscInt v = 0; v < g->nvertices; ++v) {
+    const PetscReal *x = g->x + 2 * v, *y = g->x + 2 * PetscMax(begin, 0);
+    PetscBool        starts;
+
+    if (leaving[v] < 0 || used[v] || cellside[leaving[v]] != side) continue;
+    starts = (PetscBool)(cellside[entering[v]] != side);
+    if (begin >= 0 && (open != starts ? open : x[1] > y[1] || (x[1] == y[1] && x[0] > y[0]))) continue;
+    begin = v;
+    open  = starts;
+  }
+  return begin;
+}
+
+/* The segments of every side, piece after piece */
 static PetscErrorCode AbutFirstSegments_Private(const AbutGmsh *g, const PetscInt leaving[], AbutFirst first)
 {
-  const PetscInt n     = g->nvertices;
-  PetscInt       total = 0, *entering;
-  PetscBool     *used;
+  PetscInt   total = 0, *entering;
+  PetscBool *used;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc2(n, &entering, n, &used));
-#define AbutNextVertex(i) g->cell[(i) / g->corners * g->corners + ((i) + 1) % g->corners]
-  for (PetscInt v = 0; v < n; ++v) {
-    used[v] = PETSC_FALSE;
-    total += leaving[v] >= 0;
-    if (leaving[v] >= 0) entering[AbutNextVertex(leaving[v])] = leaving[v];
+  PetscCall(PetscMalloc1(g->nvertices, &entering));
+  PetscCall(PetscCalloc1(g->nvertices, &used));
+  for (PetscInt v = 0; v < g->nvertices; ++v) {
+    if (leaving[v] < 0) continue;
+    ++total;
+    entering[AbutOutlineNext_Private(g, leaving[v])] = leaving[v];
   }
   PetscCall(PetscMalloc1(first->nsides + 1, &first->segments));
   PetscCall(PetscMalloc1(4 * total, &first->segment));
   total = 0;
   for (PetscInt s = 0; s < first->nsides; ++s) {
-    PetscInt begin = 0;
+    PetscInt v;
 
     first->segments[s] = total;
-    while (begin >= 0) {
-      PetscBool open = PETSC_FALSE;
+    while ((v = AbutOutlineBegin_Private(g, first->cellside, leaving, entering, used, s)) >= 0)
+      for (; !used[v] && first->cellside[leaving[v]] == s; v = AbutOutlineNext_Private(g, leaving[v])) {
+        PetscReal *segment = first->segment + 4 * total++;
 
-      begin = -1;
-      for (PetscInt v = 0; v < n; ++v) {
-        const PetscReal *x = g->x + 2 * v, *y = g->x + 2 * PetscMax(begin, 0);
-        PetscBool        starts;
-
-        if (used[v] || leaving[v] < 0 || first->cellside[leaving[v]] != s) continue;
-        starts = (PetscBool)(first->cellside[entering[v]] != s);
-        if (begin < 0 || (starts && !open) || (starts == open && (x[1] < y[1] || (x[1] == y[1] && x[0] < y[0])))) {
-          begin = v;
-          open  = starts;
-        }
-      }
-      for (PetscInt v = begin; v >= 0 && !used[v] && first->cellside[leaving[v]] == s; v = AbutNextVertex(leaving[v])) {
         used[v] = PETSC_TRUE;
-        for (PetscInt d = 0; d < 2; ++d) {
-          first->segment[4 * total + d]     = g->x[2 * v + d];
-          first->segment[4 * total + 2 + d] = g->x[2 * AbutNextVertex(leaving[v]) + d];
-        }
-        ++total;
+        PetscCall(PetscArraycpy(segment, g->x + 2 * v, 2));
+        PetscCall(PetscArraycpy(segment + 2, g->x + 2 * AbutOutlineNext_Private(g, leaving[v]), 2));
       }
-    }
   }
   first->segments[first->nsides] = total;
-#undef AbutNextVertex
-  PetscCall(PetscFree2(entering, used));
+  PetscCall(PetscFree(entering));
+  PetscCall(PetscFree(used));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -164,6 +164,7 @@ PetscErrorCode AbutMeshSetTies(AbutMesh mesh, PetscInt n, const AbutTie tie[])
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(mesh, ABUTMESH_CLASSID, 1);
+  PetscCheck(!mesh->first, PetscObjectComm((PetscObject)mesh), PETSC_ERR_SUP, "Only vertices of a box can be tied");
   PetscCall(AbutJournalTies_Private(mesh, n, tie));
   for (PetscInt side = 0; side < ABUT_BOX_SIDES; ++side) {
     PetscCall(PetscMalloc1(n, &sorted[side]));

@@ -211,6 +211,29 @@ static PetscErrorCode AbutSceneCheckFollow_Private(AbutScene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Merged triangles are made again from the first mesh by the places of vertices on the grid of a box */
+static PetscErrorCode AbutSceneCheckCoarsen_Private(AbutScene scene)
+{
+  PetscReal part;
+
+  PetscFunctionBegin;
+  PetscCall(AbutAdaptorGetCoarsening(scene->adaptor, &part));
+  for (PetscInt b = 0; b < scene->nbodies && part > 0.; ++b) {
+    AbutMesh    mesh;
+    AbutShape   shape;
+    const char *name, *file;
+
+    PetscCall(AbutBodyGetName(scene->body[b], &name));
+    PetscCall(AbutBodyGetMesh(scene->body[b], &mesh));
+    PetscCall(AbutMeshGetFile(mesh, &file));
+    PetscCall(AbutMeshGetShape(mesh, &shape));
+    AbutCheckInput(!file || !scene->estimates[b] || shape == ABUT_QUAD, PetscObjectComm((PetscObject)scene),
+                   "adaptor_coarsen: the triangles of %s are from a file and are not merged; leave it out, or give a file with quads",
+                   name);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Keys of the adaptor that speak of contacts */
 static PetscErrorCode AbutSceneCheckContactKeys_Private(AbutScene scene)
 {
@@ -304,6 +327,7 @@ PetscErrorCode AbutSceneSetFromOptions(AbutScene scene)
   if (scene->npairs && scene->adaptor && !scene->interleave) PetscCall(AbutSceneCyclesFromOptions_Private(scene));
   AbutCheckInput(!scene->interleave || scene->adaptor, comm,
                  "scene_interleave: the scene has no adaptor; give adaptor_type, or leave scene_interleave out");
+  if (scene->adaptor) PetscCall(AbutSceneCheckCoarsen_Private(scene));
   PetscCall(AbutSceneCheckContactKeys_Private(scene));
   PetscCall(PetscOptionsHasName(NULL, NULL, "-output_profile", &profile));
   AbutCheckInput(!profile || scene->npairs, comm,

@@ -19,8 +19,8 @@ EFFECTS = [
     Effect("spring", "AbutSpring", "-e_effect_bodies lower -e_effect_side right -e_effect_normal 1e3", None),
     Effect("overlap", "AbutOverlap", "-e_effect_bodies upper -e_effect_side bottom -e_effect_depth 1e-4", "-e_effect_depth 0"),
     Effect("thermal", "AbutThermal", "-e_effect_temperature 3+y -e_effect_expansion 1e-5", "-e_effect_temperature 0"),
-    Effect("plane_stress", "AbutPlane_stress", "-e_effect_bodies lower", None),
-    Effect("axisymmetric", "AbutAxisymmetric", "", None),
+    Effect("plane_stress", None, "-e_effect_bodies lower", None),
+    Effect("axisymmetric", None, "", None),
 ]
 TIMES = re.compile("^(time|memory)[.]")
 

@@ -2,6 +2,8 @@
 import concurrent.futures, os, random, re, shlex, tempfile, time, unittest
 
 from abut import BUILD, LAYERS, PROGRAM, case, execute
+from meshes import PLATE, bad_meshes
+from msh import text
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 LINE = "abut: "
@@ -28,6 +30,8 @@ def prepare(folder):
     write(folder, "empty.csv", "x,y,value\n")
     write(folder, "bad.csv", "x,y,value\n0,0,1\n0,1,one\n")
     write(folder, "fixed.yml", fixed_scene())
+    for name, content in bad_meshes():
+        write(folder, name, content)
     return sorted(os.listdir(folder))
 
 
@@ -170,6 +174,20 @@ def test_a_scene_that_is_cut_off():
 def test_a_scene_that_lacks_a_line():
     lines = small_scene().splitlines(keepends=True)
     check_scenes(["".join(lines[:i] + lines[i + 1 :]) for i in range(len(lines))], "yml")
+
+
+def test_meshes_that_are_cut_off():
+    with tempfile.TemporaryDirectory() as folder:
+        for version in 2.2, 4.1:
+            for binary in False, True:
+                whole = text(PLATE, version=version, binary=binary)
+                last = len(whole.rstrip())
+                for end in [*range(0, last, last // 7), last - 1]:
+                    write(folder, "cut.msh", whole[:end])
+                    result = execute([PROGRAM, "-scene_bodies", "p", "-p_mesh_file", f"{folder}/cut.msh", "-explain"], 5)
+                    lines = result.stderr.splitlines()
+                    assert result.returncode == 1 and len(lines) == 1, (version, binary, end, result)
+                    assert lines[0].startswith(f"{LINE}p_mesh_file: {folder}/cut.msh: "), lines
 
 
 def test_plain_options_that_are_cut_off():

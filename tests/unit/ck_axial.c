@@ -80,10 +80,11 @@ END_TEST
 
 START_TEST(a_field_that_is_no_polynomial_is_met_with_the_order_of_the_elements)
 {
-  const PetscInt order = 1 + _i % 7 % 4;
-  CkField        field = {.at = CkBessel, .young = CK_YOUNG, .poisson = 0.3};
-  AbutBody       body  = CkBodyOfOrder(_i, &field, ABUT_AXISYMMETRIC, 0., 0.5, 1., 1.5, 4);
-  PetscReal      l2[2], stress[2];
+  const PetscInt  order   = 1 + _i % 7 % 4;
+  CkField         field   = {.at = CkBessel, .young = CK_YOUNG, .poisson = 0.3};
+  AbutBody        body    = CkBodyOfOrder(_i, &field, ABUT_AXISYMMETRIC, 0., 0.5, 1., 1.5, 4);
+  const PetscReal axis[2] = {0., 0.8};
+  PetscReal       l2[2], stress[2], value[7];
 
   CkGiveAll(body, &field, "--", "tt", "tu", "tt");
   for (PetscInt i = 0; i < 2; ++i) {
@@ -93,6 +94,8 @@ START_TEST(a_field_that_is_no_polynomial_is_met_with_the_order_of_the_elements)
   }
   ck_assert_double_eq_tol(PetscLog2Real(stress[0] / stress[1]), (double)order, _i < 11 ? 0.12 : 0.2); /* bisected triangles change shape */
   ck_assert_double_gt(PetscLog2Real(l2[0] / l2[1]), order + 0.8);
+  CkOk(AbutBodyGetPointValues(body, axis, value));
+  ck_assert_double_eq_tol(value[0], 0., 1e-14 * PetscAbsReal(value[1]));
   CkOk(AbutBodyDestroy(&body));
 }
 END_TEST

@@ -2,9 +2,10 @@
 
 Where a body is a column, the axis x runs across it and y up.
 """
-import math
+import math, os, tempfile
 
-from abut import case, run
+from abut import case, run, run_error
+from msh import grid, write
 
 YOUNG, NU = 2.1e5, 0.3
 WEIGHT = 2e-2 * 9.81  # density times acceleration
@@ -151,3 +152,37 @@ def test_an_overlap_is_a_gap_below_0_without_a_warning():
         errors.append(abs(two["pair.mid.pressure_max"] / exact - 1))
         assert "warning: pair mid: at first the sides overlap, by 0.001 at" in press(c, "-mid_pair_gap 0-1e-3").stdout
     case("H10", "the same by an effect that says how far a side stands out", max(errors), 1e-8)
+
+
+COS, SIN = math.cos(math.pi / 6), math.sin(math.pi / 6)
+
+
+def turned(x, y):
+    return x * COS - y * SIN, x * SIN + y * COS
+
+
+def test_on_inclined_sides_pressures_are_normal_and_springs_sink_by_them():
+    """A box of 2 x 1 from a file, turned by 30 degrees: p on its top and k under its bottom, and at its ends what keeps it from growing along itself"""
+    p, k, q = 20.0, 3e3, 20.0 * NU / (1 - NU)
+    effect = lambda name, kind, side, keys: f"-{name}_effect_type {kind} -{name}_effect_bodies b -{name}_effect_side {side} {keys} "
+    effects = "-scene_effects ground,top,left,right " + effect("ground", "spring", "bottom", f"-ground_effect_normal {k} -ground_effect_tangential 7e3")
+    for name, pressure in ("top", p), ("left", q), ("right", q):
+        effects += effect(name, "pressure", name, f"-{name}_effect_pressure {pressure}")
+    stress, moved = {"s11": -q * COS**2 - p * SIN**2, "s22": -q * SIN**2 - p * COS**2, "s12": (p - q) * SIN * COS}, []
+    for corners, ranks in (4, 1), (3, 2), (4, 3):
+        mesh = grid(lambda s, t: turned(2 * s, t), 6, 3, ("bottom", "right", "top", "left"), corners=corners)
+        with tempfile.TemporaryDirectory() as folder:
+            scene = f"-scene_bodies b -b_mesh_file {write(os.path.join(folder, 'part.msh'), mesh)} -b_material_young {YOUNG} -b_material_poisson {NU}"
+            points = probes("b", turned(1.3, 0.6), turned(1.1, 1e-9))
+            record = run(None, *scene.split(), *effects.split(), *points, "-estimator_type residual", ranks=ranks)
+        errors = [off(record, 0, key, value, p) for key, value in stress.items()]
+        errors += [off(record, 1, "u1", p / k * SIN, p / k), off(record, 1, "u2", -p / k * COS, p / k)]
+        assert max(errors) < 1e-8 and record["check.balance"] < 1e-9 and record["check.energy"] < 1e-9, (errors, dict(record))
+        assert record["eta.b"] < 1e-8
+        moved.append(max(errors))
+    alone = "-ground_effect_tangential 0"
+    with tempfile.TemporaryDirectory() as folder:
+        scene = f"-scene_bodies b -b_mesh_file {write(os.path.join(folder, 'part.msh'), mesh)} -b_material_young {YOUNG} -b_material_poisson {NU}"
+        line = run_error(None, *scene.split(), *effects.split(), *alone.split())
+    assert line == "abut: ground_effect_tangential: missing; bottom of b runs along no axis, there give both stiffnesses", line
+    print(moved)

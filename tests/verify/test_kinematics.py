@@ -79,3 +79,27 @@ def test_estimators_that_can_judge_hot_sheets_adapt_them():
         assert record["cycles"] > 1, record
         stress.append(record["probe.P.s22"])
     assert max(stress) - min(stress) < 0.02 * YOUNG * ALPHA * 50, stress
+
+
+def test_a_round_column_on_springs_bears_its_weight():
+    """Without lateral strain, nu = 0: u2 = -w H/k at the foot, and -w H^2/(2 E) more at the head; the energy is pi R^2 w^2 H^3/(6 E)"""
+    w, H, k, R = 3.0, 2.0, 1e4, 0.5
+    column = f"-part_mesh_box 0,0,{R},{H} -part_mesh_cells 2,6 -part_mesh_order 2 -part_material_poisson 0 -P_probe_point 0.3,{H}"
+    effects = "-scene_effects round,weight,ground -round_effect_type axisymmetric -weight_effect_type gravity -ground_effect_type spring"
+    keys = f"-weight_effect_density {w} -weight_effect_acceleration 0,-1 -ground_effect_bodies part -ground_effect_side bottom -ground_effect_normal {k}"
+    record = run(None, *BODY.split(), *column.split(), *effects.split(), *keys.split())
+    check(record)
+    near(record["probe.P.u2"], -w * H / k - w * H**2 / (2 * YOUNG), 1e-9)
+    near(record["energy.strain"], pi * R**2 * w**2 * H**3 / (6 * YOUNG), 1e-8)
+
+
+def test_sheets_pressed_on_each_other_give_way_like_sheets():
+    """The same stress everywhere: p = closure/(H1/E1 + H2/E2 + theta); E/(1 - nu^2) in place of E would be 10 per cent more"""
+    pair = f"""-scene_bodies lower,upper -scene_pairs mid -mid_pair_bodies upper,lower -mid_pair_sides bottom,top -mid_pair_penalty 0.05
+    -lower_mesh_box 0,0,4,1 -lower_mesh_cells 8,2 -lower_material_young {YOUNG} -lower_material_poisson {NU} -lower_bc_left_u1 0 -lower_bc_bottom_u2 0
+    -upper_mesh_box 0,1,4,2 -upper_mesh_cells 6,2 -upper_material_young {YOUNG} -upper_material_poisson {NU} -upper_bc_left_u1 0 -upper_bc_top_u2 -1e-3
+    -scene_effects thin -thin_effect_type plane_stress -snes_rtol 1e-11"""
+    for loop in "ddactive", "ddneumann":
+        record = run(None, *pair.split(), "-snes_type", loop)
+        check(record)
+        near(record["pair.mid.force"], 4 * 1e-3 * YOUNG / 2.05, 1e-8)
