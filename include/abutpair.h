@@ -34,7 +34,7 @@ typedef struct {
   PetscReal tangential;   /* integral of the tangential tractions: what the first side pulls the second along its tangent */
   PetscReal slip_max;     /* at closed nodes, since the last load step */
   PetscReal stick_length; /* sum of D_i over the closed nodes whose traction is below mu p */
-  PetscReal friction;     /* by how much tractions exceed mu p, or slip is not theirs: over p_max times what layers and theta give under it */
+  PetscReal friction; /* by how much tractions exceed mu p, or slip is not theirs: over p_max times what layers and theta give under it */
 } AbutPairState;
 
 PETSC_EXTERN PetscClassId   ABUTPAIR_CLASSID;
@@ -58,8 +58,8 @@ PETSC_EXTERN PetscErrorCode AbutPairGetSizes(AbutPair, PetscInt[2]);
 PETSC_EXTERN PetscErrorCode AbutPairGetComponents(AbutPair, PetscInt *);
 
 /* Traces at the nodes of the two sides (as ordered in AbutSide) -> nodal pressures; nodal pressures -> nodal forces on both sides. They
-   have AbutPairGetComponents() values a node: 1, along the outward normal, if the sides are straight, otherwise 2. With friction they have 2,
-   and behind the pressures are as many tangential tractions. */
+   have AbutPairGetComponents() values a node: 1, along the outward normal, if the sides are straight, otherwise 2. With friction they have
+   2, and behind the pressures are as many tangential tractions. */
 PETSC_EXTERN PetscErrorCode AbutPairComputePenetration(AbutPair, const PetscReal[], const PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutPairComputeSlip(AbutPair, const PetscReal[], const PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutPairComputePressure(AbutPair, const PetscReal[], const PetscReal[], PetscReal[]);

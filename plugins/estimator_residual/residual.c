@@ -20,9 +20,9 @@
 
    With axial symmetry all are integrals over a whole turn, and div s has the terms (s_rr - s_tt)/r and s_rz/r.
 
-   There t is the given traction, with that of springs under the displacement, or that of the contact pressure, -p n: then the term is the
-   shear stress, and the normal stress plus the pressure. The pressure comes from the nodal contact forces: force over the integral of the
-   node's function, interpolated.
+   There t is the given traction, with that of springs under the displacement, or that of contact, -p n and with friction a tangential one:
+   then the term is the normal stress plus the pressure, and what the shear stress differs by. They come from the nodal contact forces: force
+   over the integral of the node's function, interpolated; at a corner between two sides in contact without the tangential one.
 
    eta_e is C res_e in the scale of eq. (27): relative to the root mean square of the stress. R. Verfuerth, A review of a posteriori error
    estimation and adaptive mesh-refinement techniques (1996); with contact P. Hild and S. Nicaise, Residual a posteriori error estimators

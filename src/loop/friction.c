@@ -1,21 +1,6 @@
 #include <abut/private/loopimpl.h> /*I "abutloop.h" I*/
-#include <petscblaslapack.h>
 
-/* Coulomb friction in the contact model: behind the contact forces F of a pair stand its tangential forces T, |T_i| <= mu F_i. The contact
-   problem of the model is solved with the bounds moving as F does, a semismooth Newton method on dense matrices: no iteration over bounds,
-   and no body is solved. */
-
-#define ABUT_ROUNDOFF 1e-13 /* relative to the largest force or penetration */
-#define ABUT_SINGULAR 1e-10 /* of what a free motion meets when the others are held */
-#define ABUT_PATIENCE 10
-
-/* What an unknown does: a force presses or is open, a tangential force sticks or slips, forwards or backwards */
-typedef enum {
-  ABUT_SLIPS_BACK = -1,
-  ABUT_HOLDS      = 0, /* pressed, or sticks: its equation is solved */
-  ABUT_SLIPS      = 1,
-  ABUT_OPEN       = 2
-} AbutZone;
+/* What ddactive does otherwise where a pair has friction: unknowns, steps, what it learns. coulomb.c solves the contact problem. */
 
 /* Makes model->friction if a pair has it */
 PetscErrorCode AbutContactModelFriction_Private(AbutInterface f, AbutContactModel model)
@@ -57,243 +42,8 @@ PetscErrorCode AbutModelFrictionDestroy_Private(AbutModelFriction *friction)
   PetscCall(PetscFree4((*friction)->normal, (*friction)->tangent, (*friction)->mu, (*friction)->zone));
   for (PetscInt k = 0; k < (*friction)->nlearned; ++k) PetscCall(PetscFree((*friction)->learned[k]));
   PetscCall(PetscFree((*friction)->learned));
+  PetscCall(PetscFree((*friction)->spring));
   PetscCall(PetscFree(*friction));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* A tangential force that slips goes with its contact force: the column of the latter has both, by this factor. 0: it does not slip. */
-static PetscReal AbutFrictionShare_Private(AbutContactModel model, PetscInt c)
-{
-  const AbutModelFriction friction = model->friction;
-  const PetscInt          t        = friction->tangent[c];
-
-  return t >= 0 && friction->zone[t] != ABUT_HOLDS ? friction->zone[t] * friction->mu[t] : 0.;
-}
-
-/* The unknowns whose equations are solved */
-static PetscInt AbutFrictionActive_Private(AbutContactModel model)
-{
-  const AbutModelFriction friction = model->friction;
-  PetscInt                na       = 0;
-
-  for (PetscInt c = 0; c < model->n; ++c) {
-    const PetscInt normal = friction->normal[c];
-
-    if (friction->zone[c] == ABUT_HOLDS && (normal < 0 || friction->zone[normal] == ABUT_HOLDS)) model->active[na++] = c;
-  }
-  return na;
-}
-
-/* X = M^{-1} [G b] on the active unknowns, M not symmetric where nodes slip */
-static PetscErrorCode AbutFrictionSolveActive_Private(AbutContactModel model, PetscInt na)
-{
-  const PetscInt *active = model->active, n = model->n, m = model->m;
-  PetscBLASInt    bn, columns, info, *pivot;
-
-  PetscFunctionBegin;
-  if (!na) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt j = 0; j < na; ++j) {
-    const PetscReal share = AbutFrictionShare_Private(model, active[j]), *S = model->S + active[j] * n;
-    const PetscReal *T = share != 0. ? model->S + model->friction->tangent[active[j]] * n : NULL;
-
-    for (PetscInt i = 0; i < na; ++i) model->factor[j * na + i] = S[active[i]] + (T ? share * T[active[i]] : 0.);
-    model->factor[j * na + j] += model->soft[active[j]];
-    for (PetscInt k = 0; k < m; ++k) model->X[k * na + j] = model->G[k * n + active[j]];
-    model->X[m * na + j] = model->b[active[j]];
-  }
-  PetscCall(PetscBLASIntCast(na, &bn));
-  PetscCall(PetscBLASIntCast(m + 1, &columns));
-  PetscCall(PetscMalloc1(na, &pivot));
-  PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&bn, &columns, model->factor, &bn, pivot, model->X, &bn, &info));
-  PetscCall(PetscFree(pivot));
-  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "The contact model with friction is singular: LAPACK gesv returned %d", (int)info);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Free motions a that balance the loads; *loose is one that the active unknowns do not resist, -1 if there is none */
-static PetscErrorCode AbutFrictionBalance_Private(AbutContactModel model, PetscInt na, PetscReal a[], PetscInt *loose)
-{
-  const PetscInt m = model->m;
-  PetscReal     *W, *scale;
-  PetscBLASInt   bm, one = 1, info = 0, *pivot;
-
-  PetscFunctionBegin;
-  *loose = -1;
-  if (!m) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc3(m * m, &W, m, &scale, m, &pivot));
-  for (PetscInt k = 0; k < m; ++k) {
-    a[k] = model->e[k];
-    for (PetscInt i = 0; i < na; ++i) {
-      const PetscInt  c     = model->active[i];
-      const PetscReal share = AbutFrictionShare_Private(model, c);
-      const PetscReal g = model->G[k * model->n + c] + (share != 0. ? share * model->G[k * model->n + model->friction->tangent[c]] : 0.);
-
-      a[k] -= g * model->X[m * na + i];
-      for (PetscInt l = 0; l < m; ++l) W[l * m + k] += g * model->X[l * na + i];
-    }
-    scale[k] = PetscSqrtReal(PetscAbsReal(W[k * m + k]));
-    if (scale[k] <= 0. && *loose < 0) *loose = k;
-  }
-  if (*loose < 0) {
-    for (PetscInt k = 0; k < m; ++k) {
-      a[k] /= scale[k];
-      for (PetscInt l = 0; l < m; ++l) W[l * m + k] /= scale[k] * scale[l];
-    }
-    PetscCall(PetscBLASIntCast(m, &bm));
-    PetscCallBLAS("LAPACKgetrf", LAPACKgetrf_(&bm, &bm, W, &bm, pivot, &info));
-    for (PetscInt k = 0; k < m && *loose < 0; ++k)
-      if (PetscAbsReal(W[k * m + k]) < ABUT_SINGULAR) *loose = k;
-  }
-  if (*loose < 0) {
-    PetscCallBLAS("LAPACKgetrs", LAPACKgetrs_("N", &bm, &one, W, &bm, pivot, a, &bm, &info));
-    for (PetscInt k = 0; k < m; ++k) a[k] /= scale[k];
-  }
-  PetscCall(PetscFree3(W, scale, pivot));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Forces x and motions a in the present zones, and g, what is left of penetrations and slips */
-static PetscErrorCode AbutFrictionZone_Private(AbutContactModel model, PetscReal x[], PetscReal g[], PetscReal a[], PetscInt *loose)
-{
-  const PetscInt n = model->n, m = model->m, na = AbutFrictionActive_Private(model);
-
-  PetscFunctionBegin;
-  PetscCall(AbutFrictionSolveActive_Private(model, na));
-  PetscCall(AbutFrictionBalance_Private(model, na, a, loose));
-  if (*loose >= 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscArrayzero(x, n));
-  PetscCall(PetscArraycpy(g, model->b, n));
-  for (PetscInt k = 0; k < m; ++k)
-    for (PetscInt i = 0; i < n; ++i) g[i] += a[k] * model->G[k * n + i];
-  for (PetscInt j = 0; j < na; ++j) {
-    const PetscInt  c     = model->active[j];
-    const PetscReal share = AbutFrictionShare_Private(model, c);
-
-    x[c] = model->X[m * na + j];
-    for (PetscInt k = 0; k < m; ++k) x[c] += a[k] * model->X[k * na + j];
-    if (share != 0.) x[model->friction->tangent[c]] = share * x[c];
-  }
-  for (PetscInt c = 0; c < n; ++c) {
-    if (x[c] == 0.) continue;
-    for (PetscInt i = 0; i < n; ++i) g[i] -= model->S[c * n + i] * x[c];
-    g[c] -= model->soft[c] * x[c];
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The zone that the answer asks an unknown to be in: its own, unless it is contradicted. Of the tolerances the first is for forces. */
-static PetscInt AbutFrictionAsked_Private(const AbutContactModel model, PetscInt c, const PetscReal x[], const PetscReal g[],
-                                          const PetscReal tolerance[2])
-{
-  const PetscInt zone = model->friction->zone[c], normal = model->friction->normal[c];
-
-  if (normal < 0) {
-    if (zone == ABUT_HOLDS) return x[c] < -tolerance[0] ? ABUT_OPEN : ABUT_HOLDS;
-    return g[c] > tolerance[1] ? ABUT_HOLDS : ABUT_OPEN;
-  }
-  if (model->friction->zone[normal] != ABUT_HOLDS) return zone;
-  if (zone != ABUT_HOLDS) return zone * g[c] < -tolerance[1] ? ABUT_HOLDS : zone;
-  if (PetscAbsReal(x[c]) <= model->friction->mu[c] * PetscMax(0., x[normal]) + tolerance[0]) return ABUT_HOLDS;
-  return x[c] > 0. ? ABUT_SLIPS : ABUT_SLIPS_BACK;
-}
-
-/* Changes zones where they are contradicted, all at once, and one at a time when that has not made the contradictions fewer for a while.
-   Returns how many there were. */
-static PetscInt AbutFrictionExchange_Private(AbutContactModel model, const PetscReal x[], const PetscReal g[], PetscInt *least,
-                                             PetscInt *patience)
-{
-  PetscReal largest[2] = {0., 0.};
-  PetscInt  wrong      = 0;
-
-  for (PetscInt i = 0; i < model->n; ++i) {
-    largest[0] = PetscMax(largest[0], ABUT_ROUNDOFF * PetscAbsReal(x[i]));
-    largest[1] = PetscMax(largest[1], ABUT_ROUNDOFF * PetscMax(PetscAbsReal(g[i]), PetscAbsReal(model->b[i])));
-  }
-  for (PetscInt c = 0; c < model->n; ++c)
-    if (AbutFrictionAsked_Private(model, c, x, g, largest) != model->friction->zone[c]) model->active[wrong++] = c;
-  if (wrong < *least) {
-    *least    = wrong;
-    *patience = ABUT_PATIENCE;
-  } else --*patience;
-  for (PetscInt j = wrong - 1; j >= (*patience > 0 ? 0 : PetscMax(0, wrong - 1)); --j) /* backwards: tangential forces before their bounds */
-    model->friction->zone[model->active[j]] = AbutFrictionAsked_Private(model, model->active[j], x, g, largest);
-  return wrong;
-}
-
-/* Nodes that touch without force do not hold a body */
-static void AbutFrictionTouching_Private(AbutContactModel model, const PetscReal x[])
-{
-  PetscReal largest = 0., gap = 0.;
-  PetscBool loaded = PETSC_FALSE;
-
-  for (PetscInt k = 0; k < model->m; ++k)
-    if (model->e[k] != 0.) loaded = PETSC_TRUE;
-  for (PetscInt c = 0; c < model->n; ++c) {
-    largest = PetscMax(largest, PetscAbsReal(x[c]));
-    gap     = PetscMax(gap, PetscAbsReal(model->b[c]));
-  }
-  for (PetscInt c = 0; c < model->n; ++c)
-    if (model->friction->normal[c] < 0 &&
-        (x[c] <= ABUT_ROUNDOFF * largest || !(loaded || x[c] * model->S[c * model->n + c] > ABUT_SINGULAR * gap)))
-      model->friction->zone[c] = ABUT_OPEN;
-}
-
-/* The zones that begin: those of the forces that act; a node that is loaded to its bound slips on */
-static void AbutFrictionBegin_Private(AbutContactModel model, const PetscReal r[], const PetscReal F[])
-{
-  const AbutModelFriction friction = model->friction;
-  PetscBool               any      = PETSC_FALSE;
-
-  for (PetscInt c = 0; c < model->n; ++c)
-    if (friction->normal[c] < 0 && F[c] > 0.) any = PETSC_TRUE;
-  for (PetscInt c = 0; c < model->n; ++c) {
-    const PetscInt normal = friction->normal[c];
-
-    if (normal < 0) friction->zone[c] = (any ? F[c] > 0. : model->m || r[c] > 0.) ? ABUT_HOLDS : ABUT_OPEN;
-    else if (F[c] == 0. || PetscAbsReal(F[c]) < (1. - ABUT_SINGULAR) * friction->mu[c] * F[normal]) friction->zone[c] = ABUT_HOLDS;
-    else friction->zone[c] = F[c] > 0. ? ABUT_SLIPS : ABUT_SLIPS_BACK;
-  }
-}
-
-/* AbutContactModelSolve_Private() with friction: r has slips behind the penetrations, F tangential forces behind the forces */
-PetscErrorCode AbutContactModelSolveFriction_Private(AbutContactModel model, const PetscReal r[], const PetscReal F[], PetscReal d[],
-                                                     PetscReal a[], PetscInt *loose, PetscBool *solved)
-{
-  const PetscInt n = model->n;
-  PetscBool      rescued = PETSC_FALSE;
-  PetscReal     *g;
-  PetscInt       least = n + 1, patience = ABUT_PATIENCE, wrong = 1;
-
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc1(n, &g));
-  AbutFrictionBegin_Private(model, r, F);
-  for (PetscInt i = 0; i < n; ++i) {
-    model->b[i] = r[i] + model->soft[i] * F[i];
-    for (PetscInt j = 0; j < n; ++j) model->b[i] += model->S[i * n + j] * F[j];
-  }
-  *loose = -1;
-  for (PetscInt it = 0; wrong && it < 100 + 10 * n; ++it) {
-    PetscCall(AbutFrictionZone_Private(model, d, g, a, loose));
-    if (*loose >= 0 && rescued) break;
-    if (*loose >= 0) { /* too few nodes hold a body: close all and let them stick, once */
-      for (PetscInt c = 0; c < n; ++c) model->friction->zone[c] = ABUT_HOLDS;
-      rescued = PETSC_TRUE;
-    } else wrong = AbutFrictionExchange_Private(model, d, g, &least, &patience);
-  }
-  if (!wrong && model->m) {
-    AbutFrictionTouching_Private(model, d);
-    PetscCall(AbutFrictionZone_Private(model, d, g, a, loose));
-  }
-  *solved = (PetscBool)(!wrong && *loose < 0);
-  for (PetscInt c = 0; c < n; ++c) {
-    const PetscInt normal = model->friction->normal[c];
-
-    if (!*solved) d[c] = 0.;
-    else if (normal < 0) d[c] = PetscMax(0., d[c]); /* forces come before the tangential ones that they bound */
-    else d[c] = PetscMax(-model->friction->mu[c] * d[normal], PetscMin(model->friction->mu[c] * d[normal], d[c]));
-  }
-  for (PetscInt c = 0; c < n && *solved; ++c) d[c] -= F[c];
-  PetscCall(PetscFree(g));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -336,6 +86,8 @@ void AbutContactModelFrictionAdd_Private(const AbutContactModel model, PetscReal
   }
 }
 
+#define ABUT_NOTHING 1e-10 /* of the energy of a direction */
+
 /* A sweep has shown that forces d give way by q. Steps are not those of least energy here, so what d has of earlier directions is taken out
    first, in the sense of the compliance: the model then agrees with all sweeps, not only with the last one. */
 PetscErrorCode AbutContactModelLearnFriction_Private(AbutContactModel model, const PetscReal d[], const PetscReal q[])
@@ -350,7 +102,7 @@ PetscErrorCode AbutContactModelLearnFriction_Private(AbutContactModel model, con
   PetscCall(PetscArraycpy(v, d, n));
   PetscCall(PetscArraycpy(w, q, n));
   for (PetscInt k = 0; k < friction->nlearned; ++k) {
-    const PetscReal *old = friction->learned[k];
+    const PetscReal *old  = friction->learned[k];
     PetscReal        part = 0., whole = 0.;
 
     for (PetscInt c = 0; c < n; ++c) {
@@ -363,7 +115,7 @@ PetscErrorCode AbutContactModelLearnFriction_Private(AbutContactModel model, con
     dq += d[c] * q[c];
     vw += v[c] * w[c];
   }
-  if (vw <= ABUT_SINGULAR * dq) { /* nothing new */
+  if (vw <= ABUT_NOTHING * dq) { /* nothing new */
     PetscCall(PetscFree(v));
     PetscFunctionReturn(PETSC_SUCCESS);
   }

@@ -3,7 +3,8 @@
 /* Is every rigid motion that the prescribed displacements leave free resisted by contact? Contact resists a motion of the bodies by its
    normal jump, at the points of AbutPairGetSharedPoints(); where it has friction, by the tangential jump, too. */
 
-/* One row per shared point of a pair and direction, one column per free motion of a body: the displacements of both sides along it, added */
+/* One row per shared point of a pair and direction, one column per free motion of a body: the displacements of both sides along it,
+   added */
 typedef struct {
   PetscInt   rows, columns;
   PetscInt  *body, *mode; /* [columns] */

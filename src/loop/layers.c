@@ -204,9 +204,9 @@ static PetscErrorCode AbutLayerSides_Private(AbutInterface f, AbutContactModel m
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The same along side t for tangential tractions t cos(xi x): k/xi tanh, which is H 2(1+nu)/E for long waves, where the far side is held along
-   it, and k/xi coth, a rod, where it is not; the half plane for short ones. On straight sides slips have the modes that penetrations have.
-   Nothing of how tractions and pressures act on each other: that the sweeps teach. */
+/* The same along side t for tangential tractions t cos(xi x): k/xi tanh, which is H 2(1+nu)/E for long waves, where the far side is held
+   along it, and k/xi coth, a rod, where it is not; the half plane for short ones. On straight sides slips have the modes that penetrations
+   have. Nothing of how tractions and pressures act on each other: that the sweeps teach. */
 static PetscErrorCode AbutLayerShear_Private(AbutInterface f, AbutContactModel model, PetscInt t, const AbutModes *side)
 {
   AbutConditionType condition;

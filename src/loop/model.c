@@ -28,7 +28,7 @@ static PetscErrorCode AbutContactModelNodes_Private(AbutInterface f, AbutContact
         }
         ++c;
       }
-      model->normals[i] = (c - model->first[i]) / (friction ? 2 : 1);
+      model->normals[i]   = (c - model->first[i]) / (friction ? 2 : 1);
       model->first[i + 1] = c;
     }
     model->n = c;

@@ -1,7 +1,7 @@
 #include <abut/private/pairimpl.h> /*I "abutpair.h" I*/
 
-/* Coulomb friction of a pair: slips and tangential tractions at the nodes that carry pressures, by the same dual functions. Where the pair has
-   none, nothing of this is made or called, and traces of straight sides are normal displacements. */
+/* Coulomb friction of a pair: slips and tangential tractions at the nodes that carry pressures, by the same dual functions. Where the pair
+   has none, nothing of this is made or called, and traces of straight sides are normal displacements. */
 
 static PetscLogEvent ABUTPAIR_Friction;
 
@@ -101,8 +101,8 @@ PetscErrorCode AbutPairGetShearCompliance(AbutPair pair, PetscReal compliance[2]
 }
 
 /*@C
-   AbutPairComputeSlip - Averaged nodal slips: (u_1 - u_2).tau tested with the dual functions, over their integrals, less the slips that were
-   kept
+   AbutPairComputeSlip - Averaged nodal slips: (u_1 - u_2).tau tested with the dual functions, over their integrals, less the slips that
+   were kept
 
    Not Collective
 
@@ -298,11 +298,12 @@ PetscErrorCode AbutPairFrictionState_Private(AbutPair pair, const PetscReal u1[]
     state->energy += 0.5 * pair->theta * t * t * pair->D[i];
     if (p[i] <= 0.) continue;
     state->slip_max = PetscMax(state->slip_max, PetscAbsReal(s[i]));
-    if (PetscAbsReal(t) < (1. - ABUT_STICKS) * most) state->stick_length += pair->D[i];
-    misfit = PetscMax(misfit, PetscMax(PetscAbsReal(slip) * (most - PetscAbsReal(t)), -slip * t));
+    if (PetscAbsReal(t) < (1. - ABUT_STICKS) * most) state->stick_length += pair->length[i];
+    misfit          = PetscMax(misfit, PetscMax(PetscAbsReal(slip) * (most - PetscAbsReal(t)), -slip * t));
     state->friction = PetscMax(state->friction, (PetscAbsReal(t) - most) / largest);
   }
-  if (largest > 0.) state->friction = PetscMax(state->friction, misfit / ((compliance[0] + compliance[1] + pair->theta) * PetscSqr(largest)));
+  if (largest > 0.)
+    state->friction = PetscMax(state->friction, misfit / ((compliance[0] + compliance[1] + pair->theta) * PetscSqr(largest)));
   PetscCall(PetscFree(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

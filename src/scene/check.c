@@ -37,7 +37,7 @@ void AbutSceneBeginChecks_Private(AbutScene scene)
 PetscErrorCode AbutSceneEndChecks_Private(AbutScene scene, PetscBool last, PetscBool *consistent)
 {
   PetscReal residual = 0., pressure = 0.;
-  PetscInt  n        = scene->npairs ? ABUT_CHECK_FRICTION : ABUT_CHECK_CONTACT;
+  PetscInt  n = scene->npairs ? ABUT_CHECK_FRICTION : ABUT_CHECK_CONTACT;
 
   PetscFunctionBegin;
   *consistent = PETSC_TRUE;

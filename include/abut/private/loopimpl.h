@@ -9,11 +9,20 @@ typedef struct {
   PetscReal *x, *value;
 } AbutOldTrace;
 
+/* What an unknown does: a force presses or is open, a tangential force sticks or slips, forwards or backwards */
+typedef enum {
+  ABUT_SLIPS_BACK = -1,
+  ABUT_HOLDS      = 0, /* pressed, or sticks: its equation is solved */
+  ABUT_SLIPS      = 1,
+  ABUT_OPEN       = 2
+} AbutZone;
+
 /* Of contact models with friction: unknowns are then contact forces and tangential forces */
 typedef struct {
   PetscInt   *normal, *tangent; /* [n] the contact force that bounds a tangential one, and back; -1 if it is none, or there is none */
   PetscReal  *mu;               /* [n] of its pair */
   PetscInt   *zone;             /* [n] work */
+  PetscReal  *spring;           /* [m] what resists free motions beside contact while zones are sought; force over motion */
   PetscInt    nlearned;
   PetscReal **learned; /* [nlearned][2*n] forces and what they took, of all sweeps, conjugate */
 } *AbutModelFriction;
@@ -23,21 +32,21 @@ typedef struct {
      F complementary to  b - (S + soft) F + G a,   G'F = e
    With friction F and penetrations of a pair have behind them its tangential forces and slips. */
 typedef struct {
-  PetscInt   n, m;         /* contact nodes; free motions of all bodies */
-  PetscInt  *first, *node; /* [npairs+1] first contact node of each pair; [n] number among the nodes of the pair's pressure side, of
+  PetscInt          n, m;         /* contact nodes; free motions of all bodies */
+  PetscInt         *first, *node; /* [npairs+1] first contact node of each pair; [n] number among the nodes of the pair's pressure side, of
                               tangential forces beyond all of these */
-  PetscInt  *normals;      /* [npairs] contact nodes of each pair */
-  PetscReal *D, *soft;     /* [n] nodal lengths; theta/D */
-  PetscReal *open;         /* [n] penetrations of bodies that stand still: minus the gap */
-  PetscReal *S;            /* [n*n] at first the layers' compliance, then corrected by every sweep */
-  PetscReal *G, *e;        /* [m*n] penetrations by unit motions; [m] resultants of the loads along them */
-  PetscInt  *owner, *mode; /* [m] whose motion, and its number there */
-  PetscReal *factor, *X;   /* [n*n], [(m+1)*n] work */
-  PetscInt   nbodies;      /* once AbutInterfaceComply_Private() has been called */
-  Vec       *force, *w;    /* [nbodies] of its last call: nodal forces on the bodies, displacements they make */
-  PetscReal *b;            /* [n] work */
-  PetscInt  *active;       /* [n] work */
-  AbutModelFriction friction; /* NULL: no pair has any */
+  PetscInt         *normals;      /* [npairs] contact nodes of each pair */
+  PetscReal        *D, *soft;     /* [n] nodal lengths; theta/D */
+  PetscReal        *open;         /* [n] penetrations of bodies that stand still: minus the gap */
+  PetscReal        *S;            /* [n*n] at first the layers' compliance, then corrected by every sweep */
+  PetscReal        *G, *e;        /* [m*n] penetrations by unit motions; [m] resultants of the loads along them */
+  PetscInt         *owner, *mode; /* [m] whose motion, and its number there */
+  PetscReal        *factor, *X;   /* [n*n], [(m+1)*n] work */
+  PetscInt          nbodies;      /* once AbutInterfaceComply_Private() has been called */
+  Vec              *force, *w;    /* [nbodies] of its last call: nodal forces on the bodies, displacements they make */
+  PetscReal        *b;            /* [n] work */
+  PetscInt         *active;       /* [n] work */
+  AbutModelFriction friction;     /* NULL: no pair has any */
 } *AbutContactModel;
 
 struct _p_AbutInterface {
@@ -117,14 +126,14 @@ PETSC_INTERN void           AbutContactModelPressures_Private(const AbutContactM
 PETSC_INTERN void           AbutContactModelForces_Private(const AbutContactModel, PetscInt, PetscReal *const[], PetscReal[]);
 PETSC_INTERN PetscReal      AbutContactModelEnergy_Private(const AbutContactModel, const PetscReal[], const PetscReal[]);
 PETSC_INTERN PetscErrorCode AbutContactModelOpen_Private(AbutInterface, AbutContactModel);
-/* friction.c */
+/* friction.c, coulomb.c: only with friction, but for the first two */
 PETSC_INTERN PetscErrorCode AbutContactModelFriction_Private(AbutInterface, AbutContactModel);
 PETSC_INTERN PetscErrorCode AbutModelFrictionDestroy_Private(AbutModelFriction *);
 PETSC_INTERN PetscErrorCode AbutContactModelSolveFriction_Private(AbutContactModel, const PetscReal[], const PetscReal[], PetscReal[],
                                                                   PetscReal[], PetscInt *, PetscBool *);
-PETSC_INTERN PetscReal      AbutContactModelFrictionStep_Private(const AbutContactModel, const PetscReal[], const PetscReal[],
-                                                                 const PetscReal[], const PetscReal[]);
-PETSC_INTERN void           AbutContactModelFrictionAdd_Private(const AbutContactModel, PetscReal, const PetscReal[], PetscReal[]);
+PETSC_INTERN PetscReal AbutContactModelFrictionStep_Private(const AbutContactModel, const PetscReal[], const PetscReal[], const PetscReal[],
+                                                            const PetscReal[]);
+PETSC_INTERN void      AbutContactModelFrictionAdd_Private(const AbutContactModel, PetscReal, const PetscReal[], PetscReal[]);
 PETSC_INTERN PetscErrorCode AbutContactModelLearnFriction_Private(AbutContactModel, const PetscReal[], const PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutContactModelDestroy_Private(AbutContactModel *);
 PETSC_EXTERN PetscLogEvent  ABUTINTERFACE_Sweep;
