@@ -5,12 +5,11 @@
 
 static PetscLogEvent ABUTPAIR_Friction;
 
-/* Component d of the tangent of a side on a segment, the normal turned: along the side with its body on the left */
-static inline PetscReal AbutSegmentTangent_Private(const AbutSegment *segment, PetscInt side, PetscInt d)
+/* What component d of node k on side s, in segment g, adds to the slip of node i of the pressure side: along the normal turned, with the body
+   on the left */
+static inline PetscReal AbutSegmentTangent_Private(AbutPair pair, PetscInt g, PetscInt s, PetscInt d, PetscInt i, PetscInt k)
 {
-  const PetscReal t = d ? segment->normal[0] : -segment->normal[1];
-
-  return side ? -t : t;
+  return d ? pair->vector[g][s][0][i][k] : -pair->vector[g][s][1][i][k];
 }
 
 PetscErrorCode AbutPairFrictionFromOptions_Private(AbutPair pair)
@@ -134,7 +133,7 @@ PetscErrorCode AbutPairComputeSlip(AbutPair pair, const PetscReal u1[], const Pe
       for (PetscInt side = 0; side < 2; ++side)
         for (PetscInt j = 0; j <= pair->order[side]; ++j)
           for (PetscInt d = 0; d < 2; ++d)
-            s[pair->order[0] * seg->element[0] + i] += seg->M[side][i][j] * AbutSegmentTangent_Private(seg, side, d) *
+            s[pair->order[0] * seg->element[0] + i] += AbutSegmentTangent_Private(pair, k, side, d, i, j) *
                                                        trace[side][2 * (pair->order[side] * seg->element[side] + j) + d];
   }
   for (PetscInt i = 0; i < n; ++i) s[i] = pair->D[i] > 0. ? s[i] / pair->D[i] - pair->friction->reference[i] : 0.;
@@ -169,8 +168,7 @@ PetscErrorCode AbutPairFrictionForce_Private(AbutPair pair, const PetscReal t[],
       for (PetscInt side = 0; side < 2; ++side)
         for (PetscInt j = 0; j <= pair->order[side]; ++j)
           for (PetscInt d = 0; d < 2; ++d)
-            force[side][2 * (pair->order[side] * seg->element[side] + j) + d] += AbutSegmentTangent_Private(seg, side, d) *
-                                                                                 seg->M[side][i][j] *
+            force[side][2 * (pair->order[side] * seg->element[side] + j) + d] += AbutSegmentTangent_Private(pair, k, side, d, i, j) *
                                                                                  t[pair->order[0] * seg->element[0] + i];
   }
   PetscCall(PetscLogEventEnd(ABUTPAIR_Friction, pair, 0, 0, 0));
