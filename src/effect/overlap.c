@@ -12,7 +12,7 @@
 
    Notes:
    The pairs of the side find so much less gap, and contact pushes the bodies apart. Where an effect says so a run does not warn of sides
-   that overlap at first. In the log it is "AbutOverlap".
+   that overlap at first. As it is one of the gap, a load factor does not change it. In the log it is "AbutOverlap".
 
    Limits: small against the cells: the bodies are computed as they are drawn.
 
