@@ -176,6 +176,7 @@ PetscErrorCode AbutPairSetFromOptions(AbutPair pair, PetscInt nbodies, AbutBody 
   PetscCall(AbutPairObstacleFromOptions_Private(pair));
   PetscCall(AbutPairCheckFacing_Private(pair));
   PetscCall(AbutPairSetTheta_Private(pair));
+  PetscCall(AbutLogEventGet(pair->body[1] ? "AbutPairSetUp" : "AbutObstacle", ABUTPAIR_CLASSID, &pair->event));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -207,6 +208,7 @@ PetscErrorCode AbutPairSetUp(AbutPair pair)
     if (generation[s] != pair->generation[s]) same = PETSC_FALSE;
   }
   if (same) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscLogEventBegin(pair->event, pair, 0, 0, 0));
   PetscCall(AbutPairMortarReset_Private(pair));
   for (PetscInt s = 0; s < 2 && pair->body[s]; ++s) {
     pair->generation[s] = generation[s];
@@ -214,6 +216,7 @@ PetscErrorCode AbutPairSetUp(AbutPair pair)
     pair->n[s] = pair->nodes[s]->n;
   }
   PetscCall(AbutPairMortar_Private(pair));
+  PetscCall(PetscLogEventEnd(pair->event, pair, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -100,14 +100,18 @@ static PetscErrorCode AbutRecorderCollectPair_Private(AbutInterface iface, Petsc
 static PetscErrorCode AbutRecorderWriteProfileTo_Private(AbutRecorder rec, const char path[], AbutInterface iface, PetscInt npairs,
                                                          AbutPair pairs[])
 {
-  Profile p = {npairs, NULL};
+  Profile       p = {npairs, NULL};
+  PetscLogEvent event;
 
   PetscFunctionBegin;
+  PetscCall(AbutLogEventGet("AbutWriteProfile", ABUTRECORDER_CLASSID, &event));
+  PetscCall(PetscLogEventBegin(event, rec, 0, 0, 0));
   PetscCall(PetscMalloc1(npairs, &p.pair));
   for (PetscInt i = 0; i < npairs; ++i) PetscCall(AbutRecorderCollectPair_Private(iface, i, pairs[i], &p.pair[i]));
   PetscCall(AbutFileWrite(PetscObjectComm((PetscObject)rec), path, WriteProfile, &p));
   for (PetscInt i = 0; i < npairs; ++i) PetscCall(PetscFree(p.pair[i].gap));
   PetscCall(PetscFree(p.pair));
+  PetscCall(PetscLogEventEnd(event, rec, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

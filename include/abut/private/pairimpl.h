@@ -30,6 +30,7 @@ struct _p_AbutPair {
 
   /* of the present meshes */
   PetscInt        generation[2];
+  PetscLogEvent   event;      /* of the set-up: two bodies, or an obstacle */
   PetscInt        which;      /* the side that carries the pressures */
   PetscInt        n[2];       /* nodes of both sides */
   PetscInt        order[2];   /* of the displacements of the pressure side, and of the other one: -1 if there is none */
