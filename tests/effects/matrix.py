@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
-"""Only what a scene calls for: whatever a scene can switch on is a row, set alone on top of a base scene that does without it, and measured by what it
-leaves in PETSc's log, in the linker's list of opened libraries, in PETSc's memory and on the disk.
+"""Only what a scene calls for: whatever a scene can switch on is a row, set alone on top of a base scene that does without it, and
+measured by what it leaves in PETSc's log, in the linker's list of opened libraries, in PETSc's memory and on the disk.
 
     matrix.py --build build       all rows, as a table; `make matrix`
 
-A new effect, estimator, adaptor or output adds a row to ROWS. `events` are those that the row brings: no other event of Abut, SNES or EPS may appear, and
-none may go unless it is among `gone`; `libraries` and `files` are what is opened and written beyond the base's. What `leaves` the record as it was, or all,
-the solvers' events too, says so; `nothing` are keys with which a row amounts to nothing, and the record then is the base's to the last bit.
+A new effect, estimator, adaptor or output adds a row to ROWS. `events` are those that it brings: no other one of Abut, SNES or
+EPS may appear, and none may go; `libraries` and `files` are what is opened and written beyond the base's, where rows that write
+`parallel` also open parts of MPI. What `leaves` the "answer", the "record" to the last bit, or "all", the counts of the solvers'
+events too, says so; anything else must change the record. `nothing` are keys with which a row amounts to nothing: the record then
+is the base's. `without` are keys of the base that its own take the place of.
 """
 import argparse, collections, concurrent.futures, os, re, shutil, subprocess, sys, tempfile
 
@@ -47,20 +49,24 @@ BENT = BLOCKS.replace(PUSH, "-upper_bc_top_u2 bent.csv")  # with something to es
 ADAPTED = f"{BENT} -adaptor_type doerfler -adaptor_target 0.02 -estimator_type zz"
 PAPER = "-snes_type ddneumann -mid_pair_penalty 0.5"
 FILED = f"{TWO} {PUSH} {PAIR} -lower_mesh_file part.msh"
-VTU = [f"f_{name}_{cycle:04d}.{kind}" for name, kind in (("lower", "vtu"), ("upper", "vtu"), ("mid", "vtp")) for cycle in (0, 1)] + ["f.pvd"]
+PARTS = ("lower", "vtu"), ("upper", "vtu"), ("mid", "vtp")
+VTU = [f"f_{name}_{cycle:04d}.{kind}" for name, kind in PARTS for cycle in (0, 1)] + ["f.pvd"]
 MUPARSER, ESTIMATES = ["libmuparser.so.2"], {"AbutEstimate"}
 ADAPTS = ESTIMATES | {"AbutMark", "AbutMeshAdapt"}
 LOOP = {"AbutSweep", "SNESSolve", "SNESSetUp"}
 
-Row = collections.namedtuple("Row", "name on keys events libraries files leaves nothing without parallel", defaults=((), (), None, None, "", False))
+FIELDS = "name on keys events libraries files leaves nothing without parallel"
+Row = collections.namedtuple("Row", FIELDS, defaults=((), (), None, None, "", False))
 
 
 def effect(kind, keys, events, nothing=None, libraries=()):
-    return Row(f"effect {kind}", BLOCKS, f"-scene_effects e -e_effect_type {kind} {keys}", set(events.split()), libraries, (), None, nothing)
+    keys = f"-scene_effects e -e_effect_type {kind} {keys}"
+    return Row(f"effect {kind}", BLOCKS, keys, set(events.split()), libraries, nothing=nothing)
 
 
 def estimator(kind, keys=""):
-    return Row(f"estimator {kind}", BENT, f"-estimator_type {kind} {keys}", ESTIMATES, [f"libestimator_{name}.so" for name in kind.split(",")])
+    libraries = [f"libestimator_{name}.so" for name in kind.split(",")]
+    return Row(f"estimator {kind}", BENT, f"-estimator_type {kind} {keys}", ESTIMATES, libraries)
 
 
 def adaptor(kind, keys):
@@ -155,7 +161,8 @@ class Matrix:
             with open(os.path.join(folder, name), "wb") as f:
                 f.write(content)
         given = [word.format(**self.paths) for word in words(options)]
-        done = subprocess.run([self.program, *given], cwd=folder, capture_output=True, text=True, env={**environment(debug), "TMPDIR": folder})
+        around = {**environment(debug), "TMPDIR": folder}
+        done = subprocess.run([self.program, *given], cwd=folder, capture_output=True, text=True, env=around)
         assert done.returncode == expect, f"{' '.join(given)}\n{done.stdout}{done.stderr}"
         return done
 
@@ -176,7 +183,8 @@ class Matrix:
         objects = {name.strip(): int(count) for name, count in re.findall(r"^ +(\w[\w ]*?) +(\d+) +\d+ *$", log, re.M)}
         (memory,) = re.findall(r"Maximum memory PetscMalloc\(\)ed (\d+)", done.stdout)
         libraries = {os.path.basename(path) for path in re.findall(r"calling init: (\S+)", linker)}
-        calls = {tuple(map(os.path.basename, three)) for three in re.findall(r"binding file (\S+) \[0\] to (\S+) \[0\]: normal symbol `(\w+)'", linker)}
+        calls = re.findall(r"binding file (\S+) \[0\] to (\S+) \[0\]: normal symbol `(\w+)'", linker)
+        calls = {tuple(map(os.path.basename, three)) for three in calls}
         return Measured(events, objects, int(memory), record, libraries, set(written), calls)
 
 
@@ -238,15 +246,19 @@ def judge(matrix, row):
     wrong = [*complaints(row, base, with_it)]
     if row.nothing and matrix.measure(on, row.keys, row.nothing).record != base.record:
         wrong.append(f"with {row.nothing} it is not nothing")
-    events = " ".join(f"{name} {with_it.events.get(name, 0)}" for name in sorted(row.events))
-    objects = " ".join(f"{name.replace('Abut ', '')} {n:+}" for name, n in sorted(difference(with_it.objects, base.objects).items()) if name in TOLD)
-    line = row.name, events, objects, " ".join(row.libraries), f"{with_it.bytes - base.bytes:+}", "FAILS" if wrong else "passes"
+    events = ", ".join(f"{name.replace('Abut', '')} {with_it.events.get(name, 0)}" for name in sorted(row.events))
+    more = difference(with_it.objects, base.objects)
+    objects = ", ".join(f"{TOLD[name]} {more[name]:+}" for name in TOLD if name in more)
+    libraries = ", ".join(name[3:].split(".so")[0] for name in row.libraries)
+    line = row.name, events, objects, libraries, f"{with_it.bytes - base.bytes:+}", "FAILS" if wrong else "passes"
     return line, [f"{row.name}: {text}" for text in wrong]
 
 
 # The classes that the table shows; those of meshes and index sets follow from the meshes
-TOLD = ["Abut Effect", "Abut Pair", "Abut Estimator", "Abut Adaptor", "SNES", "EPS Solver", "Krylov Solver", "Matrix", "Matrix Null Space", "Viewer"]
-HEAD = "switched on", "its events, how often", "objects more", "libraries", "bytes more", "verdict"
+TOLD = {f"Abut {name}": name for name in ("Effect", "Pair", "Estimator", "Adaptor")}
+TOLD.update({"SNES": "SNES", "EPS Solver": "EPS", "Krylov Solver": "KSP", "Matrix": "Mat", "Matrix Null Space": "NullSpace"})
+TOLD["Viewer"] = "Viewer"
+HEAD = "switched on", "its events, how often", "more objects", "libraries", "more bytes", "verdict"
 
 
 def compile_point(folder):

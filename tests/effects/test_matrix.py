@@ -1,4 +1,5 @@
-"""Only the effects that a scene calls for: the rows of matrix.py, the exact logs of one body and of the layers, and builds from which something was taken"""
+"""Only the effects that a scene calls for: the rows of matrix.py, the exact logs of one body and of the layers, and builds
+from which something was taken"""
 import glob, os, re, shlex, subprocess, tempfile, unittest
 
 from abut import BUILD, LAYERS, ROOT
@@ -47,7 +48,7 @@ def test_every_further_body_makes_the_same_objects():
 
 
 def test_the_layers_have_exactly_the_events_and_objects_of_their_loop():
-    """c meshes of the lower body, one of the upper, s sweeps: eqs. (20), (21), each one solve of both bodies, then one estimate and one adaptation a mesh"""
+    """c meshes of the lower body, one of the upper; s sweeps, eqs. (20) and (21), each one solve of both bodies; one estimate a mesh"""
     matrix = Matrix(BUILD)
     layers = matrix.measure(LAYERS, "-upper_mesh_cells 32,8 -adaptor_threshold 0.3 -snes_ddneumann_gamma 0.05 -record record")
     record = dict(line.split(None, 1) for line in layers.record)
@@ -147,7 +148,8 @@ def test_slepc_and_hdf5_are_mapped_but_not_called_unless_asked_for():
     library = os.path.join(BUILD, "lib", "libabut.so")
     linked = subprocess.run(["ldd", library], capture_output=True, text=True, check=True).stdout
     for path in library, re.search(r"libpetsc\S* => (\S+)", linked).group(1):
-        if "NOW" in subprocess.run(["readelf", "-d", path], capture_output=True, text=True, check=True).stdout or os.environ.get("LD_BIND_NOW"):
+        said = subprocess.run(["readelf", "-d", path], capture_output=True, text=True, check=True).stdout
+        if "NOW" in said or os.environ.get("LD_BIND_NOW"):
             raise unittest.SkipTest(f"{path} binds all functions at the start")
     if not config(BUILD, "SLEPC_LIBS"):
         raise unittest.SkipTest("built without SLEPc")
