@@ -113,6 +113,9 @@ suite: all $(CHECKS)
 	@$(PYTHON) tests/run.py --build $(B) --suite --long $(T)
 test-long: all $(CHECKS)
 	@$(PYTHON) tests/run.py --build $(B) --long $(T)
+# what each effect, estimator, adaptor, loop and output brings to a run, and that a run without it has nothing of it, as a table
+matrix: all
+	@$(PYTHON) tests/effects/matrix.py --build $(B)
 # random scenes, and what libFuzzer makes of files; one that goes wrong is printed with the command that repeats it
 fuzz: all deps-dev
 	@$(PYTHON) tests/fuzz/scenes.py --abut $(B)/bin/abut
@@ -162,5 +165,5 @@ VERSION = $(shell sed -n 's/^version: *//p' CITATION.cff)
 clean:
 	rm -rf $(B) out
 FORCE:
-.PHONY: all run study-loops study-shares study-accuracy study-paper study-cost study-compare study-estimators test test-long suite fuzz check asan coverage memcheck setup deps deps-dev format lint install clean FORCE
+.PHONY: all run study-loops study-shares study-accuracy study-paper study-cost study-compare study-estimators test test-long suite matrix fuzz check asan coverage memcheck setup deps deps-dev format lint install clean FORCE
 .DELETE_ON_ERROR:

@@ -76,6 +76,7 @@ PETSC_EXTERN PetscErrorCode    AbutArchiveFit(AbutArchive, const char[], const c
 PETSC_EXTERN PetscErrorCode    AbutArchiveDestroy(AbutArchive *);
 
 PETSC_EXTERN PetscErrorCode AbutGetProcessorTime(PetscLogDouble *);
+PETSC_EXTERN PetscErrorCode AbutLogEventGet(const char[], PetscClassId, PetscLogEvent *);
 PETSC_EXTERN PetscErrorCode AbutSolveBand(PetscInt, PetscInt, PetscReal[], PetscInt, PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutPluginAppend(MPI_Comm, const char[]);
 PETSC_EXTERN PetscErrorCode AbutPluginLoad(MPI_Comm, const char[], const char[], PetscBool *);

@@ -132,6 +132,8 @@ PetscErrorCode AbutBodySetUp(AbutBody body)
   PetscCall(AbutElementCreate_Private(body->mesh, t->order + (t->corners == 4 || body->kinematics == ABUT_AXISYMMETRIC), &body->element));
   body->meandilatation = (PetscBool)(t->corners == 4 && t->order == 1 && body->kinematics != ABUT_PLANE_STRESS &&
                                      body->poisson > ABUT_ALMOST_INCOMPRESSIBLE);
+  body->assembly       = ABUTBODY_Assemble;
+  if (body->meandilatation) PetscCall(AbutLogEventGet("AbutDilatation", ABUTBODY_CLASSID, &body->assembly));
   PetscCall(VecCreateGhostBlock(PetscObjectComm((PetscObject)body), 2, 2 * t->nowned, PETSC_DECIDE, t->nunknown - t->nowned,
                                 t->global + t->nowned, &body->u));
   PetscCall(AbutBodyCreateVec(body, &body->load));

@@ -267,6 +267,7 @@ static PetscErrorCode AbutBodySetNearNullSpace_Private(AbutBody body, const Pets
 PetscErrorCode AbutBodyModesSetUp_Private(AbutBody body)
 {
   AbutFreeMotions f;
+  PetscLogEvent   event;
 
   PetscFunctionBegin;
   PetscCall(AbutBodyFindFreeMotions_Private(body, &f));
@@ -277,10 +278,13 @@ PetscErrorCode AbutBodyModesSetUp_Private(AbutBody body)
   body->nmodes = f.n;
   PetscCall(AbutOrthonormalize_Private(f.n, body->mode));
   if (f.n) {
+    PetscCall(AbutLogEventGet("AbutFreeModes", ABUTBODY_CLASSID, &event));
+    PetscCall(PetscLogEventBegin(event, body, 0, 0, 0));
     PetscCall(AbutBodySupport_Private(body, &f));
     PetscCall(MatNullSpaceCreate(PetscObjectComm((PetscObject)body), PETSC_FALSE, f.n, body->mode, &body->free));
     PetscCall(MatSetNullSpace(body->A, body->free));
     PetscCall(MatSetOption(body->A, MAT_SYMMETRIC, PETSC_TRUE));
+    PetscCall(PetscLogEventEnd(event, body, 0, 0, 0));
   } else {
     PetscCall(PetscObjectReference((PetscObject)body->A));
     body->P = body->A;

@@ -180,7 +180,7 @@ PetscErrorCode AbutBodyAssemble_Private(AbutBody body)
   IS                      columns;
 
   PetscFunctionBegin;
-  PetscCall(PetscLogEventBegin(ABUTBODY_Assemble, body, 0, 0, 0));
+  PetscCall(PetscLogEventBegin(body->assembly, body, 0, 0, 0));
   PetscCall(AbutMeshGetTopology(body->mesh, &t));
   PetscCall(AbutBodyPreallocate_Private(body, t));
   PetscCall(AbutBodyValues_Private(body, t));
@@ -190,6 +190,6 @@ PetscErrorCode AbutBodyAssemble_Private(AbutBody body)
   PetscCall(ISDestroy(&columns));
   PetscCall(AbutBodyLift_Private(body));
   PetscCall(MatZeroRowsColumnsIS(body->A, body->constrained, body->mu, NULL, NULL));
-  PetscCall(PetscLogEventEnd(ABUTBODY_Assemble, body, 0, 0, 0));
+  PetscCall(PetscLogEventEnd(body->assembly, body, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -103,8 +103,7 @@ static PetscErrorCode AbutEffectRegisterEvent_Private(AbutEffectType type, Petsc
   PetscFunctionBegin;
   PetscCall(PetscSNPrintf(name, sizeof(name), "Abut%s", type));
   if (name[4] >= 'a' && name[4] <= 'z') name[4] += 'A' - 'a';
-  PetscCall(PetscLogEventGetId(name, event));
-  if (*event < 0) PetscCall(PetscLogEventRegister(name, ABUTEFFECT_CLASSID, event));
+  PetscCall(AbutLogEventGet(name, ABUTEFFECT_CLASSID, event));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -114,6 +114,7 @@ PetscErrorCode AbutMeshSetCurve(AbutMesh mesh, PetscInt side, const char key[], 
   PetscInt         n;
   AbutCurve        curve;
   PetscBool        circle;
+  PetscLogEvent    event;
   int              end = 0;
 
   PetscFunctionBegin;
@@ -136,6 +137,8 @@ PetscErrorCode AbutMeshSetCurve(AbutMesh mesh, PetscInt side, const char key[], 
                    comm, "%s: \"%s\" is no circle; give its centre and radius, for example circle 0,0,1", key, text);
     for (PetscInt i = 0; i < 3; ++i) curve->circle[i] = c[i];
   } else PetscCall(AbutExpressionCreate(comm, key, text, &curve->f));
+  PetscCall(AbutLogEventGet("AbutCurve", ABUTMESH_CLASSID, &event));
+  PetscCall(PetscLogEventBegin(event, mesh, 0, 0, 0));
   for (PetscInt k = 0; k < 2 * n; ++k) {
     PetscReal y[2] = {x[2 * k], x[2 * k + 1]}, distance;
 
@@ -145,6 +148,7 @@ PetscErrorCode AbutMeshSetCurve(AbutMesh mesh, PetscInt side, const char key[], 
                    "%s: the vertex (%g, %g) of the file is %g away from \"%s\"; give the curve on which the side lies", key,
                    (double)x[2 * k], (double)x[2 * k + 1], (double)distance, text);
   }
+  PetscCall(PetscLogEventEnd(event, mesh, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -123,15 +123,18 @@ PetscErrorCode AbutFirstDescribe_Private(AbutMesh mesh, char text[], size_t len)
 @*/
 PetscErrorCode AbutMeshSetFile(AbutMesh mesh, const char path[], const char region[])
 {
-  MPI_Comm    comm   = PetscObjectComm((PetscObject)mesh);
-  const char *prefix = ((PetscObject)mesh)->prefix ? ((PetscObject)mesh)->prefix : "";
-  AbutFault   fault  = {""};
-  AbutFirst   f;
-  PetscMPIInt rank;
+  MPI_Comm      comm   = PetscObjectComm((PetscObject)mesh);
+  const char   *prefix = ((PetscObject)mesh)->prefix ? ((PetscObject)mesh)->prefix : "";
+  AbutFault     fault  = {""};
+  AbutFirst     f;
+  PetscMPIInt   rank;
+  PetscLogEvent event;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(mesh, ABUTMESH_CLASSID, 1);
   PetscCheck(!mesh->setupcalled, comm, PETSC_ERR_ORDER, "Call AbutMeshSetFile() before AbutMeshSetUp()");
+  PetscCall(AbutLogEventGet("AbutReadGmsh", ABUTMESH_CLASSID, &event));
+  PetscCall(PetscLogEventBegin(event, mesh, 0, 0, 0));
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   PetscCall(PetscNew(&f));
   PetscCall(PetscStrallocpy(path, &f->path));
@@ -141,6 +144,7 @@ PetscErrorCode AbutMeshSetFile(AbutMesh mesh, const char path[], const char regi
   if (fault.text[0]) PetscCall(AbutFirstDestroy_Private(&f));
   AbutCheckInput(!fault.text[0], comm, "%smesh_file: %s: %s", prefix, path, fault.text);
   PetscCall(AbutFirstShare_Private(comm, f));
+  PetscCall(PetscLogEventEnd(event, mesh, 0, 0, 0));
   PetscCall(AbutFirstDestroy_Private(&mesh->first));
   mesh->first    = f;
   mesh->shape    = f->corners == 4 ? ABUT_QUAD : ABUT_TRIANGLE;

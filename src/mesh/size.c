@@ -73,10 +73,13 @@ static PetscErrorCode AbutMeshMarkSize_Private(AbutMesh mesh, PetscBool mark[], 
 
 PetscErrorCode AbutMeshRefineToSize_Private(AbutMesh mesh)
 {
-  PetscInt marked = 1;
+  PetscInt      marked = 1;
+  PetscLogEvent event;
 
   PetscFunctionBegin;
   if (!mesh->size) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AbutLogEventGet("AbutMeshSize", ABUTMESH_CLASSID, &event));
+  PetscCall(PetscLogEventBegin(event, mesh, 0, 0, 0));
   PetscCall(AbutMeshCheckSize_Private(mesh));
   while (marked) {
     PetscBool *mark;
@@ -86,5 +89,6 @@ PetscErrorCode AbutMeshRefineToSize_Private(AbutMesh mesh)
     if (marked) PetscCall(AbutMeshAdapt(mesh, mark));
     PetscCall(PetscFree(mark));
   }
+  PetscCall(PetscLogEventEnd(event, mesh, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -131,5 +131,6 @@ PetscErrorCode AbutPairSetFromOptions(AbutPair pair, PetscInt nbodies, AbutBody 
   PetscCall(AbutPairFrictionFromOptions_Private(pair));
   PetscCall(AbutPairCheckFacing_Private(pair));
   PetscCall(AbutPairSetTheta_Private(pair));
+  PetscCall(AbutLogEventGet(pair->body[1] ? "AbutPairSetUp" : "AbutObstacle", ABUTPAIR_CLASSID, &pair->event));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

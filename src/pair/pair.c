@@ -85,6 +85,7 @@ PetscErrorCode AbutPairSetUp(AbutPair pair)
     if (generation[s] != pair->generation[s]) same = PETSC_FALSE;
   }
   if (same) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscLogEventBegin(pair->event, pair, 0, 0, 0));
   PetscCall(AbutPairMortarReset_Private(pair));
   for (PetscInt s = 0; s < 2 && pair->body[s]; ++s) {
     pair->generation[s] = generation[s];
@@ -92,6 +93,7 @@ PetscErrorCode AbutPairSetUp(AbutPair pair)
     pair->n[s] = pair->nodes[s]->n;
   }
   PetscCall(AbutPairMortar_Private(pair));
+  PetscCall(PetscLogEventEnd(pair->event, pair, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -111,9 +111,12 @@ static PetscErrorCode AbutRecorderCollectPair_Private(AbutInterface iface, Petsc
 static PetscErrorCode AbutRecorderWriteProfileTo_Private(AbutRecorder rec, const char path[], AbutInterface iface, PetscInt npairs,
                                                          AbutPair pairs[])
 {
-  Profile p = {npairs, NULL, false};
+  Profile       p = {npairs, NULL, false};
+  PetscLogEvent event;
 
   PetscFunctionBegin;
+  PetscCall(AbutLogEventGet("AbutWriteProfile", ABUTRECORDER_CLASSID, &event));
+  PetscCall(PetscLogEventBegin(event, rec, 0, 0, 0));
   PetscCall(PetscMalloc1(npairs, &p.pair));
   for (PetscInt i = 0; i < npairs; ++i) {
     PetscCall(AbutRecorderCollectPair_Private(iface, i, pairs[i], &p.pair[i]));
@@ -125,6 +128,7 @@ static PetscErrorCode AbutRecorderWriteProfileTo_Private(AbutRecorder rec, const
     PetscCall(PetscFree(p.pair[i].slip));
   }
   PetscCall(PetscFree(p.pair));
+  PetscCall(PetscLogEventEnd(event, rec, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

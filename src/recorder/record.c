@@ -250,6 +250,20 @@ static void WriteCSV(FILE *f, const void *ctx)
   }
 }
 
+/* Under an event of its own, if the file is asked for */
+static PetscErrorCode AbutRecorderWriteTo_Private(AbutRecorder rec, const char path[], const char name[], AbutFileWriter write)
+{
+  PetscLogEvent event;
+
+  PetscFunctionBegin;
+  if (!path) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AbutLogEventGet(name, ABUTRECORDER_CLASSID, &event));
+  PetscCall(PetscLogEventBegin(event, rec, 0, 0, 0));
+  PetscCall(AbutFileWrite(PetscObjectComm((PetscObject)rec), path, write, rec));
+  PetscCall(PetscLogEventEnd(event, rec, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
    AbutRecorderEndCycle - Adds the present values of all keys to the CSV as the row of this cycle, and writes the CSV
 
@@ -282,7 +296,7 @@ PetscErrorCode AbutRecorderEndCycle(AbutRecorder rec)
   row    = &rec->row[rec->nrows++];
   row->n = rec->nkeys;
   PetscCall(PetscStrNArrayallocpy(row->n, (const char *const *)rec->value, &row->value));
-  PetscCall(AbutFileWrite(PetscObjectComm((PetscObject)rec), rec->csv_file, WriteCSV, rec));
+  PetscCall(AbutRecorderWriteTo_Private(rec, rec->csv_file, "AbutWriteCSV", WriteCSV));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -303,11 +317,9 @@ PetscErrorCode AbutRecorderEndCycle(AbutRecorder rec)
 @*/
 PetscErrorCode AbutRecorderWrite(AbutRecorder rec)
 {
-  const MPI_Comm comm = PetscObjectComm((PetscObject)rec);
-
   PetscFunctionBegin;
   PetscValidHeaderSpecific(rec, ABUTRECORDER_CLASSID, 1);
-  if (rec->record_file) PetscCall(AbutFileWrite(comm, rec->record_file, WriteRecord, rec));
-  if (rec->csv_file) PetscCall(AbutFileWrite(comm, rec->csv_file, WriteCSV, rec));
+  PetscCall(AbutRecorderWriteTo_Private(rec, rec->record_file, "AbutWriteRecord", WriteRecord));
+  PetscCall(AbutRecorderWriteTo_Private(rec, rec->csv_file, "AbutWriteCSV", WriteCSV));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -117,22 +117,30 @@ static PetscErrorCode AbutSceneArchive_Private(AbutScene scene, AbutArchive ar)
 /* After a cycle that is not the last one */
 PetscErrorCode AbutSceneCheckpoint_Private(AbutScene scene)
 {
-  AbutArchive ar;
+  AbutArchive   ar;
+  PetscLogEvent event;
 
   PetscFunctionBegin;
   if (!scene->checkpoint || (scene->cycle + 1) % scene->every) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AbutLogEventGet("AbutCheckpoint", ABUTSCENE_CLASSID, &event));
+  PetscCall(PetscLogEventBegin(event, scene, 0, 0, 0));
   PetscCall(AbutArchiveCreate(PetscObjectComm((PetscObject)scene), &ar));
   PetscCall(AbutSceneArchive_Private(scene, ar));
   PetscCall(AbutArchiveWrite(ar, scene->checkpoint));
   PetscCall(AbutArchiveDestroy(&ar));
+  PetscCall(PetscLogEventEnd(event, scene, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Before the first cycle */
 PetscErrorCode AbutSceneRestart_Private(AbutScene scene)
 {
+  PetscLogEvent event;
+
   PetscFunctionBegin;
   if (!scene->restart) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AbutLogEventGet("AbutRestart", ABUTSCENE_CLASSID, &event));
+  PetscCall(PetscLogEventBegin(event, scene, 0, 0, 0));
   for (PetscInt b = 0; b < scene->nbodies; ++b) {
     AbutMesh mesh;
 
@@ -141,5 +149,6 @@ PetscErrorCode AbutSceneRestart_Private(AbutScene scene)
   }
   PetscCall(AbutSceneArchive_Private(scene, scene->restart));
   PetscCall(AbutArchiveDestroy(&scene->restart));
+  PetscCall(PetscLogEventEnd(event, scene, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -163,14 +163,17 @@ static PetscErrorCode AbutSceneBodyFollows_Private(AbutScene scene, AbutBody bod
 /* The vertices nearest to the edges are tied to them */
 static PetscErrorCode AbutSceneTieBody_Private(AbutScene scene, AbutBody body)
 {
-  AbutMesh  mesh;
-  AbutTie  *tie;
-  PetscInt  n = 0;
-  PetscBool follows, found;
+  AbutMesh      mesh;
+  AbutTie      *tie;
+  PetscInt      n = 0;
+  PetscBool     follows, found;
+  PetscLogEvent event;
 
   PetscFunctionBegin;
   PetscCall(AbutSceneBodyFollows_Private(scene, body, &follows));
   if (!follows) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AbutLogEventGet("AbutFollow", ABUTSCENE_CLASSID, &event));
+  PetscCall(PetscLogEventBegin(event, scene, 0, 0, 0));
   PetscCall(AbutBodyGetMesh(body, &mesh));
   PetscCall(PetscMalloc1(scene->nedges, &tie));
   for (PetscInt e = 0; e < scene->nedges; ++e) {
@@ -184,6 +187,7 @@ static PetscErrorCode AbutSceneTieBody_Private(AbutScene scene, AbutBody body)
   }
   PetscCall(AbutMeshSetTies(mesh, n, tie));
   PetscCall(PetscFree(tie));
+  PetscCall(PetscLogEventEnd(event, scene, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -29,11 +29,14 @@ static PetscErrorCode AbutSceneMarkPeak_Private(AbutBody body, PetscInt side, co
    up to 3 times its residual over their part of the contact (measured, orders 2 to 4); less than ten times that is no reason to refine. */
 PetscErrorCode AbutSceneMarkPeaks_Private(AbutScene scene, AbutBody body, PetscBool mark[])
 {
-  PetscReal tolerance, residual, pressure;
+  PetscReal     tolerance, residual, pressure;
+  PetscLogEvent event;
 
   PetscFunctionBegin;
   PetscCall(AbutAdaptorGetPeak(scene->adaptor, &tolerance));
   if (tolerance <= 0. || !scene->npairs) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AbutLogEventGet("AbutPeak", ABUTSCENE_CLASSID, &event));
+  PetscCall(PetscLogEventBegin(event, scene, 0, 0, 0));
   PetscCall(AbutInterfaceGetResidual(scene->iface, &residual, &pressure));
   for (PetscInt i = 0; i < scene->npairs; ++i) {
     const PetscReal *p;
@@ -54,5 +57,6 @@ PetscErrorCode AbutSceneMarkPeaks_Private(AbutScene scene, AbutBody body, PetscB
     }
     PetscCall(PetscFree(peak));
   }
+  PetscCall(PetscLogEventEnd(event, scene, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

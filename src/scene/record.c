@@ -262,17 +262,21 @@ PetscErrorCode AbutSceneRecordRatio_Private(AbutScene scene)
   MPI_Comm       comm   = PetscObjectComm((PetscObject)scene);
   PetscReal      linear = 0.;
   PetscLogDouble whole;
+  PetscLogEvent  event;
 
   PetscFunctionBegin;
   if (!scene->wantsratio) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(AbutGetProcessorTime(&whole));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &whole, 1, MPI_DOUBLE, MPI_SUM, comm));
+  PetscCall(AbutLogEventGet("AbutTimeRatio", ABUTSCENE_CLASSID, &event));
+  PetscCall(PetscLogEventBegin(event, scene, 0, 0, 0));
   for (PetscInt b = 0; b < scene->nbodies; ++b) {
     PetscReal cpu;
 
     PetscCall(AbutBodyGetLinearCost(scene->body[b], 1e-8, &cpu));
     linear += cpu;
   }
+  PetscCall(PetscLogEventEnd(event, scene, 0, 0, 0));
   scene->ratio = whole / linear;
   PetscCall(AbutRecorderSetReal(scene->recorder, "time.ratio", scene->ratio));
   PetscFunctionReturn(PETSC_SUCCESS);

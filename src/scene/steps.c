@@ -88,8 +88,11 @@ PetscErrorCode AbutSceneEndStep_Private(AbutScene scene, AbutAdaptVerdict adapt,
 PetscErrorCode AbutSceneNextStep_Private(AbutScene scene)
 {
   const PetscReal *f = scene->factor + scene->step;
+  PetscLogEvent    event;
 
   PetscFunctionBegin;
+  PetscCall(AbutLogEventGet("AbutLoadStep", ABUTSCENE_CLASSID, &event));
+  PetscCall(PetscLogEventBegin(event, scene, 0, 0, 0));
   scene->anew    = (PetscBool)(f[0] * f[1] <= 0.);
   scene->settled = PETSC_FALSE;
   if (scene->snes) PetscCall(AbutInterfaceKeepSlip(scene->iface));
@@ -99,6 +102,7 @@ PetscErrorCode AbutSceneNextStep_Private(AbutScene scene)
   PetscCall(AbutSceneSetLoadFactor_Private(scene));
   PetscCall(AbutInterfaceReset(scene->iface));
   PetscCall(AbutScenePrintStep_Private(scene));
+  PetscCall(PetscLogEventEnd(event, scene, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

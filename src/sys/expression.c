@@ -55,7 +55,11 @@ static PetscErrorCode AbutMuParserOpen_Private(MPI_Comm comm, const char key[])
 
 static PetscErrorCode AbutExpressionParse_Private(AbutExpression e)
 {
+  PetscLogEvent event;
+
   PetscFunctionBegin;
+  PetscCall(AbutLogEventGet("AbutFormula", PETSC_OBJECT_CLASSID, &event));
+  PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
   PetscCall(AbutMuParserOpen_Private(e->comm, e->key));
   e->formula = (*AbutMuParser.create)(0);
   (*AbutMuParser.errorhandler)(e->formula, AbutExpressionQuiet_Private);
@@ -66,6 +70,7 @@ static PetscErrorCode AbutExpressionParse_Private(AbutExpression e)
   (void)(*AbutMuParser.eval)(e->formula);
   AbutCheckInput(!(*AbutMuParser.error)(e->formula), e->comm, "%s: \"%s\" is not a formula in x and y (%s); give for example 1e-3*x^2",
                  e->key, e->text, (*AbutMuParser.errormsg)(e->formula));
+  PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,85 +1,177 @@
-"""Only the effects that a scene calls for: every effect, switched on in a base scene, brings its own event to PETSc's log, which then counts above 0, and
-no other; one that amounts to nothing leaves the record as it was, to the last bit.
+"""Only the effects that a scene calls for: the rows of matrix.py, the exact logs of one body and of the layers, and builds
+from which something was taken"""
+import glob, os, re, shlex, subprocess, tempfile, unittest
 
-One row of EFFECTS an effect: its type, its event, its keys, and keys with which it amounts to nothing, if there are any. What only says how a body is to be
-read has no event. A new effect adds a row.
-"""
-import collections, os, re, subprocess, tempfile
+from abut import BUILD, LAYERS, ROOT
+from matrix import APART, BENT, BLOCKS, BODY, ONE, PAPER, ROWS, Matrix, config, difference, run_all
 
-from abut import PROGRAM, ROOT, run_error
-
-BLOCKS = """-scene_bodies lower,upper -scene_pairs mid -mid_pair_bodies upper,lower -mid_pair_sides bottom,top -snes_rtol 1e-9
-    -lower_mesh_box 0,0,4,1 -lower_mesh_cells 8,2 -lower_material_young 2e5 -lower_material_poisson 0.3 -lower_bc_left_u1 0 -lower_bc_bottom_u2 0
-    -upper_mesh_box 0,1,4,2 -upper_mesh_cells 6,2 -upper_material_young 2e5 -upper_material_poisson 0.3 -upper_bc_left_u1 0 -upper_bc_top_u2 -1e-3"""
-Effect = collections.namedtuple("Effect", "type event keys nothing")
-EFFECTS = [
-    Effect("gravity", "AbutGravity", "-e_effect_density 2e-3", "-e_effect_acceleration 0,0"),
-    Effect("force", "AbutForce", "-e_effect_f1 1e-3*y", "-e_effect_f1 0*y"),
-    Effect("pressure", "AbutPressure", "-e_effect_bodies lower -e_effect_side right -e_effect_pressure 3", "-e_effect_pressure 0*x"),
-    Effect("spring", "AbutSpring", "-e_effect_bodies lower -e_effect_side right -e_effect_normal 1e3", None),
-    Effect("overlap", "AbutOverlap", "-e_effect_bodies upper -e_effect_side bottom -e_effect_depth 1e-4", "-e_effect_depth 0"),
-    Effect("thermal", "AbutThermal", "-e_effect_temperature 3+y -e_effect_expansion 1e-5", "-e_effect_temperature 0"),
-    Effect("plane_stress", None, "-e_effect_bodies lower", None),
-    Effect("axisymmetric", None, "", None),
-]
-TIMES = re.compile("^(time|memory)[.]")
+EFFECTS = [row for row in ROWS if row.name.startswith("effect ")]
+SOLVES = re.compile("^(Abut|SNES|EPS|KSP|PCSetUp|MatCholFctrNum)")
 
 
-def solve(*options):
-    """Events with their counts, objects with theirs, the most bytes at a time, and the record without its times"""
+def log_of(measured, pattern=SOLVES):
+    return {name: count for name, count in measured.events.items() if pattern.match(name)}
+
+
+def test_every_row_brings_what_it_says_and_nothing_else():
+    table, wrong = run_all(BUILD)
+    print(table)
+    assert not wrong, "\n".join(wrong)
+
+
+def test_all_types_have_a_row():
+    """What `abut -list` knows, and the plugins of the tree"""
+    said = subprocess.run([os.path.join(BUILD, "bin", "abut"), "-list"], capture_output=True, text=True).stdout
+    kinds = re.split(r"^(\w+), -.*\n", said, flags=re.M)[1:]
+    types = {kind: set(re.findall(r"^  (\w+) ", text, re.M)) for kind, text in zip(kinds[::2], kinds[1::2])}
+    for kind in "estimators", "effects", "adaptors":
+        assert types[kind] and types[kind] <= {row.name.split()[1] for row in ROWS if row.name.startswith(kind[:-1])}, (kind, types)
+
+
+def test_one_linear_body_is_one_solve():
+    one = Matrix(BUILD).measure(ONE)
+    solve = dict.fromkeys(("AbutBodyAssemble", "AbutBodySolve", "KSPSetUp", "KSPSolve", "PCSetUp", "MatCholFctrNum", "AbutWriteRecord"), 1)
+    assert log_of(one) == solve, log_of(one)
+    objects = {name: count for name, count in one.objects.items() if re.match("Abut|SNES|DMSNES|EPS|Krylov|Precond|Matrix Null", name)}
+    mine = "Abut Scene", "Abut Body", "Abut Mesh", "Abut Interface", "Abut Recorder", "Krylov Solver", "Preconditioner", "Matrix Null Space"
+    assert objects == dict.fromkeys(mine, 1), objects
+
+
+def test_every_further_body_makes_the_same_objects():
+    """What three bodies have more than two is what two have more than one: nothing is made for pairs of bodies that do not touch"""
+    third = f"{BODY.format('c')} -c_mesh_box 9,0,13,1 -c_mesh_cells 8,2 -c_bc_bottom_u2 0 -c_bc_top_u2 -1e-3"
+    second = third.replace("c_", "d_").replace("9,0,13,1", "20,0,24,1").replace("-d_bd_", "-d_bc_")
+    scenes = ONE, f"{ONE} {third} -scene_bodies lower,c", f"{ONE} {third} {second} -scene_bodies lower,c,d"
+    one, two, three = (Matrix(BUILD).measure(scene) for scene in scenes)
+    assert difference(two.objects, one.objects) == difference(three.objects, two.objects) != {}
+    assert difference(log_of(two), log_of(one)) == difference(log_of(three), log_of(two))
+
+
+def test_the_layers_have_exactly_the_events_and_objects_of_their_loop():
+    """c meshes of the lower body, one of the upper; s sweeps, eqs. (20) and (21), each one solve of both bodies; one estimate a mesh"""
+    matrix = Matrix(BUILD)
+    layers = matrix.measure(LAYERS, "-upper_mesh_cells 32,8 -adaptor_threshold 0.3 -snes_ddneumann_gamma 0.05 -record record")
+    record = dict(line.split(None, 1) for line in layers.record)
+    c, s = int(record["cycles"]), int(record["sweeps"])
+    assert c > 2 and s > 100 and record["verdict"] == "converged"
+    assert log_of(layers) == {
+        **dict.fromkeys(("AbutBodyAssemble", "KSPSetUp", "PCSetUp", "MatCholFctrNum"), c + 1),
+        **dict.fromkeys(("AbutBodySolve", "KSPSolve"), 2 * s),
+        **dict.fromkeys(("AbutSweep", "SNESFunctionEval"), s),
+        **dict.fromkeys(("AbutPairSetUp", "SNESSolve", "SNESSetUp", "AbutEstimate", "AbutMark"), c),
+        **{"AbutMeshAdapt": c - 1, "AbutFormula": 1, "AbutWriteRecord": 1},
+    }, (c, s, log_of(layers))
+    of_meshes = "Container", "Distributed Mesh", "DM Label", "Quadrature", "Mesh Transform", "Index Set", "IS L to G Mapping", "Section"
+    others = *of_meshes, "Star Forest Graph", "Discrete System", "Weak Form", "GraphPartitioner", "Vector", "Viewer"
+    quads = matrix.measure(ONE).objects["Matrix"]
+    triangles = matrix.measure(ONE, "-lower_mesh_shape triangle").objects["Matrix"]
+    assert {name: count for name, count in layers.objects.items() if name not in others} == {
+        **dict.fromkeys(("Abut Scene", "Abut Pair", "Abut Interface", "Abut Estimator", "Abut Adaptor", "Abut Recorder"), 1),
+        **dict.fromkeys(("Abut Body", "Abut Mesh"), 2),
+        **dict.fromkeys(("Krylov Solver", "Preconditioner"), 2 + c),  # one a body, and one that every SNES brings along
+        **{"SNES": c, "DMSNES": c, "Matrix Null Space": c + 1, "Matrix": quads * c + triangles},
+    }, (c, layers.objects)
+    opened = {name for name in layers.libraries - matrix.measure(ONE).libraries}
+    assert opened == {"libestimator_fembem.so", "libmuparser.so.2"}, opened
+
+
+def copy(folder, name, plugins, library=None):
+    """The program and its library under another path of equal length, as long paths take more bytes; with those plugins"""
+    place = os.path.join(folder, name)
+    for part in "bin", "lib":
+        os.makedirs(os.path.join(place, part))
+    subprocess.run(["cp", os.path.join(BUILD, "bin", "abut"), os.path.join(place, "bin")], check=True)
+    subprocess.run(["cp", library or os.path.join(BUILD, "lib", "libabut.so"), os.path.join(place, "lib", "libabut.so")], check=True)
+    for plugin in plugins:
+        os.symlink(os.path.join(BUILD, "lib", f"libestimator_{plugin}.so"), os.path.join(place, "lib", f"libestimator_{plugin}.so"))
+    return Matrix(place)
+
+
+def without_effects(folder):
+    """libabut.so of the same objects, but for those of the types of effects, whose functions are nowhere then"""
+    types = {os.path.join(ROOT, "src", "effect", row.name.split()[1] + ".c") for row in EFFECTS}
+    sources = set(glob.glob(f"{ROOT}/src/*/*.c")) - set(glob.glob(f"{ROOT}/src/app/*.c"))
+    objects = [os.path.join(BUILD, "obj", os.path.relpath(source, ROOT)[:-1] + "o") for source in sources - types]
+    assert len(sources - types) == len(sources) - 8
+    with open(f"{ROOT}/src/effect/type.c") as f:
+        creators = set(re.findall(r"AbutEffectCreate_\w+", f.read()))
+    library = os.path.join(folder, "libabut.so")
+    nowhere = [f"-Wl,--defsym={name}=0" for name in creators]
+    flags = shlex.split(os.environ.get("CFLAGS", "")) + ["-Wl,--as-needed", "-shared", "-Wl,-soname,libabut.so", *nowhere]
+    libraries = *config(BUILD, "SLEPC_LIBS"), *config(BUILD, "DEPS_LIBS"), "-lm", "-ldl"
+    command = [*config(BUILD, "CC"), *flags, *objects, "-o", library, *libraries]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert not done.returncode, done.stderr
+    return library
+
+
+def content(path):
+    with open(path, "rb") as f:
+        return f.read()
+
+
+def test_what_is_built_but_not_called_for_costs_no_byte():
+    """A library without any type of effect, and no plugin: the same events, objects, bytes, files and digits"""
     with tempfile.TemporaryDirectory() as folder:
-        log, record = os.path.join(folder, "log"), os.path.join(folder, "record")
-        command = [PROGRAM, *BLOCKS.split(), *(word for option in options for word in option.split()), "-record", record, "-log_view", f":{log}"]
-        done = subprocess.run([*command, "-malloc_debug", "-memory_view"], cwd=ROOT, capture_output=True, text=True)
-        assert done.returncode == 0, done.stdout + done.stderr
-        with open(log) as f:
-            text = f.read()
-        with open(record) as f:
-            record = [line for line in f if not TIMES.match(line)]
-    events = {name: int(count) for name, count in re.findall(r"^(\w+) +(\d+) 1\.0 ", text, re.M)}
-    objects = {name.strip(): int(count) for name, count in re.findall(r"^ +(\w[\w ]*?) +(\d+) +\d+ *$", text, re.M)}
-    (memory,) = re.findall(r"Maximum .* space PetscMalloc\(\)ed: +total (\S+)", done.stdout)
-    return events, objects, float(memory), record
+        full, bare = copy(folder, "full", ("zz", "residual", "fembem")), copy(folder, "bare", (), without_effects(folder))
+        for scene in ONE, APART, BLOCKS, f"{BLOCKS} {PAPER}":
+            with_all, without = full.measure(scene), bare.measure(scene)
+            assert with_all == without, [pair for pair in zip(with_all, without) if pair[0] != pair[1]]
+        keys = [b"-effect_density" in content(os.path.join(folder, name, "lib", "libabut.so")) for name in ("full", "bare")]
+        assert keys == [True, False], "the types are not gone"
 
 
-def difference(one, other):
-    """What is in one and not in the other, or counts otherwise there"""
-    return {key: (other.get(key, 0), one.get(key, 0)) for key in {**one, **other} if one.get(key, 0) != other.get(key, 0)}
+def test_a_plugin_that_is_taken_away_is_missed_by_its_own_scene_only():
+    plugins = "zz", "residual", "fembem"
+    with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryDirectory() as place:
+        full = copy(folder, "all", plugins)
+        scenes = {plugin: f"{BENT} -estimator_type {plugin}" for plugin in plugins}
+        for gone in plugins:
+            fewer = copy(folder, gone[:3].ljust(3, "_"), set(plugins) - {gone})
+            for scene in [BLOCKS] + [scenes[plugin] for plugin in plugins if plugin != gone]:
+                assert fewer.measure(scene) == full.measure(scene), (gone, scene)
+            said = fewer.execute(place, scenes[gone], debug=None, expect=1).stderr
+            assert said.startswith(f'abut: estimator_type: no estimator named "{gone}"; there are: '), said
+            assert gone not in said.split("there are: ")[1].split(" (")[0], said
+            path = os.path.join(folder, f"libestimator_{gone}.so")
+            said = fewer.execute(place, scenes[gone], "-plugin", path, debug=None, expect=1).stderr
+            assert said == f'abut: plugin: no file "{path}"\n', said
 
 
-def name(effect):
-    return f"-scene_effects e -e_effect_type {effect.type} {effect.keys}"
+def called(measured, library, caller):
+    """Functions of a library that were bound when another one first called them; what only its address is taken of is bound at the start"""
+    return {name for one, other, name in measured.calls if one.startswith(caller) and other.startswith(library)}
 
 
-def test_an_effect_brings_its_own_event_and_no_other_effect():
-    base = solve()
-    print(f"{'effect':14} {'its event':18} {'count':>6} {'bytes':>8}  objects that it makes beside itself")
-    assert not {effect.event for effect in EFFECTS} & set(base[0]) and "Abut Effect" not in base[1], base
-    for effect in EFFECTS:
-        events, objects, memory, record = solve(name(effect))
-        made = {key: after - before for key, (before, after) in difference(objects, base[1]).items() if key != "Abut Effect"}
-        print(f"{effect.type:14} {effect.event or '':18} {events.get(effect.event, 0):6} {memory - base[2]:8.0f}  {made}")
-        assert {event for event in set(events) ^ set(base[0]) if event.startswith("Abut")} == {effect.event} - {None}, (events, base[0])
-        assert (not effect.event or events[effect.event] > 0) and objects["Abut Effect"] == 1
-        assert record != base[3], f"{effect.type} acted on nothing"
-
-
-def test_an_effect_that_amounts_to_nothing_changes_nothing():
-    base = solve()
-    for effect in EFFECTS:
-        if effect.nothing is None:
-            continue
-        events, _, _, record = solve(name(effect), effect.nothing)
-        assert events[effect.event] > 0 and record == base[3], (effect.type, [pair for pair in zip(record, base[3]) if pair[0] != pair[1]])
+def test_slepc_and_hdf5_are_mapped_but_not_called_unless_asked_for():
+    """libabut.so is linked with SLEPc, and PETSc with HDF5, so that both are mapped always"""
+    library = os.path.join(BUILD, "lib", "libabut.so")
+    linked = subprocess.run(["ldd", library], capture_output=True, text=True, check=True).stdout
+    for path in library, re.search(r"libpetsc\S* => (\S+)", linked).group(1):
+        said = subprocess.run(["readelf", "-d", path], capture_output=True, text=True, check=True).stdout
+        if "NOW" in said or os.environ.get("LD_BIND_NOW"):
+            raise unittest.SkipTest(f"{path} binds all functions at the start")
+    if not config(BUILD, "SLEPC_LIBS"):
+        raise unittest.SkipTest("built without SLEPc")
+    matrix = Matrix(BUILD)
+    base, spectrum = (matrix.measure(f"{BLOCKS} {PAPER}", key, debug="bindings") for key in ("", "-snes_ddneumann_gamma_spectrum"))
+    fields = matrix.measure(BLOCKS, "-output f.xdmf", debug="bindings")
+    assert called(base, "libslepc", "libabut") <= {"SlepcFinalize"}, called(base, "libslepc", "libabut")
+    assert {"SlepcInitialize", "EPSSolve"} <= called(spectrum, "libslepc", "libabut")
+    assert not {"H5open", "H5Fcreate", "H5Fopen"} & called(base, "libhdf5", "libpetsc"), called(base, "libhdf5", "libpetsc")
+    assert {"H5Fcreate"} <= called(fields, "libhdf5", "libpetsc")
 
 
 def test_keys_of_an_effect_that_the_scene_does_not_name_are_errors():
-    for effect in EFFECTS:
-        line = run_error(None, *BLOCKS.split(), *f"-e_effect_type {effect.type} {effect.keys}".split())
-        assert all(word[1:] in line for word in effect.keys.split() if word.startswith("-e_")) and "nothing in this scene reads " in line, line
-        assert "e_effect_type" in line, line
+    matrix = Matrix(BUILD)
+    for row in EFFECTS:
+        keys = row.keys.replace("-scene_effects e ", "").replace("-plugin {point} ", "")
+        with tempfile.TemporaryDirectory() as folder:
+            said = matrix.execute(folder, row.on, keys, debug=None, expect=1).stderr
+        assert "nothing in this scene reads " in said and all(word[1:] in said for word in keys.split() if word.startswith("-e_")), said
 
 
 def test_two_effects_of_a_type_share_its_event():
-    events = solve("-scene_effects a,b -a_effect_type gravity -a_effect_density 1e-3 -b_effect_type gravity -b_effect_density 1e-3")[0]
-    assert events["AbutGravity"] == 2 * solve(name(EFFECTS[0]))[0]["AbutGravity"], events
+    matrix = Matrix(BUILD)
+    two = "-scene_effects a,b -a_effect_type gravity -a_effect_density 1e-3 -b_effect_type gravity -b_effect_density 1e-3"
+    assert matrix.measure(BLOCKS, two).events["AbutGravity"] == 2 * matrix.measure(BLOCKS, EFFECTS[0].keys).events["AbutGravity"]

@@ -61,6 +61,7 @@ struct _p_AbutBody {
   AbutCondition      condition[ABUT_MAX_SIDES][2];
   PetscReal          factor;         /* of all that is prescribed */
   PetscBool          meandilatation; /* in each cell: against locking */
+  PetscLogEvent      assembly;       /* the event: another one with the mean dilatation */
   AbutHook           hooks;          /* in the order they came; NULL: none */
   PetscBool          initial;        /* initial strains are among them */
 

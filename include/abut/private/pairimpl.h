@@ -41,16 +41,17 @@ struct _p_AbutPair {
   AbutPressureSide pressureside;
 
   /* of the present meshes */
-  PetscInt     generation[2];
-  PetscInt     which;      /* the side that carries the pressures */
-  PetscInt     n[2];       /* nodes of both sides */
-  PetscInt     order[2];   /* of the displacements of the pressure side, and of the other one: -1 if there is none */
-  PetscBool    straight;   /* both sides are, and opposite to each other */
-  PetscInt     components; /* of a trace at a node: 1 the normal displacement, 2 the vector */
-  PetscReal   *place[2];   /* of the nodes of the pressure side, and of the other one, along the former: distances from its first node */
-  PetscReal   *direction;  /* [2*(elements+1)] where they are curved: outward at the vertices of the pressure side */
-  PetscInt     nsegments, room;
-  AbutSegment *segment;
+  PetscInt      generation[2];
+  PetscLogEvent event;      /* of the set-up: two bodies, or an obstacle */
+  PetscInt      which;      /* the side that carries the pressures */
+  PetscInt      n[2];       /* nodes of both sides */
+  PetscInt      order[2];   /* of the displacements of the pressure side, and of the other one: -1 if there is none */
+  PetscBool     straight;   /* both sides are, and opposite to each other */
+  PetscInt      components; /* of a trace at a node: 1 the normal displacement, 2 the vector */
+  PetscReal    *place[2];   /* of the nodes of the pressure side, and of the other one, along the former: distances from its first node */
+  PetscReal    *direction;  /* [2*(elements+1)] where they are curved: outward at the vertices of the pressure side */
+  PetscInt      nsegments, room;
+  AbutSegment  *segment;
   AbutSegmentVector *vector;     /* of the segments where traces are vectors, NULL where not */
   PetscReal          overlap[2]; /* the part of the pressure side that the other one faces: distances from its first node */
   PetscReal         *D, *F;      /* [n[which]] integrals of psi_i and of psi_i times the gap; D = 0: the node carries no pressure */
