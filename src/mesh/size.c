@@ -73,11 +73,13 @@ static PetscErrorCode AbutMeshMarkSize_Private(AbutMesh mesh, PetscBool mark[], 
 
 PetscErrorCode AbutMeshRefineToSize_Private(AbutMesh mesh)
 {
-  PetscInt      marked = 1;
-  PetscLogEvent event;
+  const PetscBool journal = mesh->journal;
+  PetscInt        marked  = 1;
+  PetscLogEvent   event;
 
   PetscFunctionBegin;
   if (!mesh->size) PetscFunctionReturn(PETSC_SUCCESS);
+  mesh->journal = PETSC_FALSE; /* what is made anew by every set-up is no step of adaptation */
   PetscCall(AbutLogEventGet("AbutMeshSize", ABUTMESH_CLASSID, &event));
   PetscCall(PetscLogEventBegin(event, mesh, 0, 0, 0));
   PetscCall(AbutMeshCheckSize_Private(mesh));
@@ -89,6 +91,7 @@ PetscErrorCode AbutMeshRefineToSize_Private(AbutMesh mesh)
     if (marked) PetscCall(AbutMeshAdapt(mesh, mark));
     PetscCall(PetscFree(mark));
   }
+  mesh->journal = journal;
   PetscCall(PetscLogEventEnd(event, mesh, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -13,6 +13,7 @@ STACK = os.path.join(ROOT, "examples", "stack", "stack.yml")
 FOLLOWED = (EXACT, "-lower_mesh_order 3 -upper_mesh_order 3 -adaptor_target 1e-3 -adaptor_jump 2 -adaptor_settle yes -adaptor_peak 1e-4")
 TRIANGLES = (EXACT, "-lower_mesh_order 2 -upper_mesh_order 2 -lower_mesh_shape triangle -upper_mesh_cells 6,2 -adaptor_target 5e-3")
 MERGED = (EXACT, "-lower_mesh_shape triangle -lower_mesh_cells 3,1 -upper_mesh_cells 3,1 -adaptor_jump 8 -adaptor_target 5e-3 -adaptor_coarsen 0.2")
+GRADED = (EXACT, "-lower_mesh_cells 3,1 -lower_mesh_size 0.2+0.3*abs(x-1) -adaptor_target 1e-2")
 INTERLEAVED = (LAYERS, "-adaptor_threshold 0.2 -scene_interleave yes -snes_type ddneumann")
 STEPPED = (EXACT, "-adaptor_target 2e-2 -scene_load_steps 0.5,1,0,0.7,-1,1 -lower_ksp_type cg -lower_pc_type jacobi -lower_ksp_rtol 1e-10")
 STAYING = (INTERLEAVED[0], INTERLEAVED[1] + " -scene_eps_u 5e-4 -upper_mesh_cells 16,4")  # whose last cycles are on the same meshes
@@ -38,7 +39,7 @@ def same(one, other, tolerance):
 
 
 def test_a_run_that_goes_on_ends_as_if_it_had_not_been_stopped():
-    for scene in FOLLOWED, TRIANGLES, MERGED, INTERLEAVED, STAYING:
+    for scene in FOLLOWED, TRIANGLES, MERGED, GRADED, INTERLEAVED, STAYING:
         with tempfile.TemporaryDirectory() as folder:
             whole, cycles = stopped(folder, scene)
             assert len(cycles) > 4, cycles
