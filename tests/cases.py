@@ -4,7 +4,6 @@ A test measures a case by case() of tests/abut.py, or CkCase() of tests/unit/ck.
 test that measures it all the same is a failure of this list.
 """
 
-CURVED = "sides are straight lines of boxes: curved ones need meshes from gmsh files"
 CASES = {
     "V01": ("two blocks pressed together, closed form with penalty and sweeps", None),
     "V02": ("patch test of the contact on matching and non-matching meshes", None),
@@ -16,7 +15,7 @@ CASES = {
     "V08": ("receding contact of a layer on a half-plane", None),
     "V09": ("flat punch with sharp corners", None),
     "V10": ("re-entrant corner of 3 pi/2", None),
-    "V11": ("pin in a hole, conforming", CURVED),
+    "V11": ("pin in a hole, conforming", None),
     "V13": ("one body: orders of convergence, hanging nodes", None),
     "V14": ("three layers, the middle one afloat", None),
     "V15": ("kernels of the boundary elements", None),
@@ -45,7 +44,7 @@ CASES = {
     "H18": ("symmetry", None),
     "H19": ("hanging nodes on the contact side", None),
     "H20": ("boundary elements close to the boundary", None),
-    "H21": ("balance of forces on curved sides", CURVED),
+    "H21": ("balance of forces on curved sides", None),
     "H22": ("meshes that match badly", None),
     "H23": ("checkpoint and restart", None),
     "H24": ("ranks", None),

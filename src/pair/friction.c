@@ -5,9 +5,9 @@
 
 static PetscLogEvent ABUTPAIR_Friction;
 
-/* What component d of node k on side s, in segment g, adds to the slip of node i of the pressure side: along the normal turned, with the body
-   on the left */
-static inline PetscReal AbutSegmentTangent_Private(AbutPair pair, PetscInt g, PetscInt s, PetscInt d, PetscInt i, PetscInt k)
+/* What component d of node k on side s, in segment g, adds to the slip of node i of the pressure side: along the normal turned, which runs
+   along the side with its body on the left */
+static inline PetscReal AbutSegmentSlip_Private(AbutPair pair, PetscInt g, PetscInt s, PetscInt d, PetscInt i, PetscInt k)
 {
   return d ? pair->vector[g][s][0][i][k] : -pair->vector[g][s][1][i][k];
 }
@@ -133,7 +133,7 @@ PetscErrorCode AbutPairComputeSlip(AbutPair pair, const PetscReal u1[], const Pe
       for (PetscInt side = 0; side < 2; ++side)
         for (PetscInt j = 0; j <= pair->order[side]; ++j)
           for (PetscInt d = 0; d < 2; ++d)
-            s[pair->order[0] * seg->element[0] + i] += AbutSegmentTangent_Private(pair, k, side, d, i, j) *
+            s[pair->order[0] * seg->element[0] + i] += AbutSegmentSlip_Private(pair, k, side, d, i, j) *
                                                        trace[side][2 * (pair->order[side] * seg->element[side] + j) + d];
   }
   for (PetscInt i = 0; i < n; ++i) s[i] = pair->D[i] > 0. ? s[i] / pair->D[i] - pair->friction->reference[i] : 0.;
@@ -168,7 +168,7 @@ PetscErrorCode AbutPairFrictionForce_Private(AbutPair pair, const PetscReal t[],
       for (PetscInt side = 0; side < 2; ++side)
         for (PetscInt j = 0; j <= pair->order[side]; ++j)
           for (PetscInt d = 0; d < 2; ++d)
-            force[side][2 * (pair->order[side] * seg->element[side] + j) + d] += AbutSegmentTangent_Private(pair, k, side, d, i, j) *
+            force[side][2 * (pair->order[side] * seg->element[side] + j) + d] += AbutSegmentSlip_Private(pair, k, side, d, i, j) *
                                                                                  t[pair->order[0] * seg->element[0] + i];
   }
   PetscCall(PetscLogEventEnd(ABUTPAIR_Friction, pair, 0, 0, 0));

@@ -48,21 +48,43 @@ static PetscErrorCode AbutSidePressure_Private(AbutInterface iface, PetscInt i, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The displacement along the outward normal at the nodes of the pressure side */
+static PetscErrorCode AbutSideNormalDisplacement_Private(AbutInterface iface, PetscInt i, AbutPair pair, PetscInt which, PetscReal un[])
+{
+  const PetscReal *trace;
+  const AbutSide  *side;
+  AbutBody         body[2];
+  PetscInt         number[2], components;
+
+  PetscFunctionBegin;
+  PetscCall(AbutInterfaceGetTrace(iface, i, which, &trace));
+  PetscCall(AbutPairGetComponents(pair, &components));
+  PetscCall(AbutPairGetBodies(pair, body, number));
+  PetscCall(AbutBodyGetSide(body[which], number[which], &side));
+  for (PetscInt k = 0; k < side->n; ++k) {
+    PetscReal normal[2];
+
+    PetscCall(AbutSideGetNodeNormal(side, k, normal));
+    un[k] = components == 1 ? trace[k] : trace[2 * k] * normal[0] + trace[2 * k + 1] * normal[1];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Pair `i` of the interface, after a sweep */
 PetscErrorCode AbutFieldsCreateSide_Private(AbutInterface iface, PetscInt i, AbutPair pair, AbutFields *f)
 {
   const MPI_Comm   comm = PetscObjectComm((PetscObject)iface);
   PetscInt         which, n;
-  const PetscReal *x, *length, *trace;
-  PetscReal       *p, *gap;
+  const PetscReal *x, *length;
+  PetscReal       *p, *gap, *un;
 
   PetscFunctionBegin;
   PetscCall(PetscMemzero(f, sizeof(*f)));
   PetscCall(AbutPairGetPressureNodes(pair, &which, &n, &x, &length));
-  PetscCall(AbutInterfaceGetTrace(iface, i, which, &trace));
-  PetscCall(PetscMalloc2(n, &p, n, &gap));
+  PetscCall(PetscMalloc3(n, &p, n, &gap, n, &un));
+  PetscCall(AbutSideNormalDisplacement_Private(iface, i, pair, which, un));
   PetscCall(AbutSidePressure_Private(iface, i, pair, n, p));
-  for (PetscInt k = 0; k < n; ++k) PetscCall(AbutPairGetGap(pair, &x[2 * k], &gap[k]));
+  for (PetscInt k = 0; k < n; ++k) PetscCall(AbutPairGetNodeGap(pair, k, &gap[k]));
   f->corners   = 2;
   f->nvertices = n;
   f->ncells    = n - 1;
@@ -70,8 +92,8 @@ PetscErrorCode AbutFieldsCreateSide_Private(AbutInterface iface, PetscInt i, Abu
   PetscCall(AbutSideLinesCreate_Private(comm, n, &f->cells));
   PetscCall(AbutSideFieldCreate_Private(comm, "pressure", 1, n, p, &f->pressure));
   PetscCall(AbutSideFieldCreate_Private(comm, "gap", 1, n, gap, &f->gap));
-  PetscCall(AbutSideFieldCreate_Private(comm, "normal_displacement", 1, n, trace, &f->normal));
-  PetscCall(PetscFree2(p, gap));
+  PetscCall(AbutSideFieldCreate_Private(comm, "normal_displacement", 1, n, un, &f->normal));
+  PetscCall(PetscFree3(p, gap, un));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -17,6 +17,10 @@ typedef struct {
   PetscReal M[2][ABUT_SIDE_NODES_MAX][ABUT_SIDE_NODES_MAX];
 } AbutSegment;
 
+/* The same with the components of the outward normal of side s, point by point: [s][d][i][k]. A constant normal would leave the slip of a side
+   across it a part of the gap, of first order where elements of two lengths meet. */
+typedef PetscReal AbutSegmentVector[2][2][ABUT_SIDE_NODES_MAX][ABUT_SIDE_NODES_MAX];
+
 /* Coulomb friction, of pairs that have it */
 typedef struct {
   PetscReal  mu;
@@ -24,10 +28,6 @@ typedef struct {
   PetscInt   n;         /* the same as they were kept, along the first side; 0: never */
   PetscReal *x, *kept;
 } *AbutFriction;
-
-/* The same with the components of the outward normal of side s, point by point: [s][d][i][k]. A constant normal would leave the slip of a side
-   across it a part of the gap, of first order where elements of two lengths meet. */
-typedef PetscReal AbutSegmentVector[2][2][ABUT_SIDE_NODES_MAX][ABUT_SIDE_NODES_MAX];
 
 struct _p_AbutPair {
   PETSCHEADER(int);
