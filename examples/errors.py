@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """What an error of a scene takes: uniform meshes of several orders, and every mesh of an adapted run
 
     examples/errors.py SCENE KEY VALUE [--orders 1,2,3] [--sizes 5,2.5,1.25] [--target 1e-4] [--to out/NAME]

@@ -66,7 +66,7 @@ def draw_pressure(axes, path, along, formula):
     if formula:
         places = [end * k / 400 for k in range(401)]
         axes.plot(places, [value(formula, t=place) for place in places], "k-", marker="", lw=1, label="formula")
-    axes.set(xlim=(0, end), ylim=(0, None), xlabel=along, ylabel="contact pressure")
+    axes.set(xlim=(0, end), ylim=(0, 1.05 * axes.get_ylim()[1]), xlabel=along, ylabel="contact pressure")
     axes.legend()
 
 
