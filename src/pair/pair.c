@@ -23,8 +23,8 @@ PetscClassId ABUTPAIR_CLASSID;
 .  -NAME_pair_penalty <c>           - theta = c H/E, default 0.05; 0 for exact contact
 .  -NAME_pair_theta <theta>         - theta itself, length/stress
 .  -NAME_pair_friction <mu>        - coefficient of Coulomb friction; without it the pair is frictionless
-.  -NAME_pair_height <H>            - H, where it is not the extent of the first body along the normal, length; required, or theta, of a body
-                                      from a file with a penalty
+.  -NAME_pair_height <H>            - H, where it is not the extent of the first body along the normal, length; required, or theta,
+                                      of a body from a file with a penalty
 -  -NAME_pair_pressure_side <first|second|finer> - which side carries the nodal pressures; finer is the other one where its body is clearly
                                                    stiffer
 
