@@ -72,6 +72,22 @@ static PetscErrorCode AbutRun(PetscInt *status)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+#define ABUT_PATIENCE 10. /* seconds */
+
+/* A bad input is raised by all ranks or none; but a formula may be no number at a point that one rank alone has met, and the others would
+   wait for it for ever */
+static PetscBool AbutAllHaveFailed(void)
+{
+  const double begun = MPI_Wtime();
+  MPI_Request  all;
+  int          done = 0;
+
+  if (MPI_Ibarrier(MPI_COMM_WORLD, &all)) return PETSC_FALSE;
+  while (!done && MPI_Wtime() - begun < ABUT_PATIENCE)
+    if (MPI_Test(&all, &done, MPI_STATUS_IGNORE)) return PETSC_FALSE;
+  return (PetscBool)done;
+}
+
 int main(int argc, char **argv)
 {
   PetscInt       status = 1;
@@ -81,6 +97,7 @@ int main(int argc, char **argv)
   ierr = AbutInitialize(&argc, &argv, help);
   if (!ierr) ierr = AbutRun(&status);
   if (ierr && ierr != PETSC_ERR_USER_INPUT && ierr != PETSC_ERR_FILE_WRITE) MPI_Abort(MPI_COMM_WORLD, 70);
+  if (ierr && !AbutAllHaveFailed()) MPI_Abort(MPI_COMM_WORLD, 1);
   if (AbutFinalize()) return 70;
   return ierr ? 1 : (int)status;
 }

@@ -161,8 +161,8 @@ PetscErrorCode AbutBodyGetCondition(AbutBody body, PetscInt side, PetscInt compo
 }
 
 /* Moments m[order+1] of a prescribed traction against the functions of an element side, over a unit of thickness or (whole) over that of
-   the body. The substitution s = z^3(10-15z+6z^2) crowds the
-   points at the ends, where a pressure may have a root or a kink; polynomials up to degree 4 and more are still integrated exactly. */
+   the body. The substitution s = z^3(10-15z+6z^2) crowds the points at the ends, where a pressure may have a root or a kink; polynomials up
+   to degree 4 and more are still integrated exactly. */
 PetscErrorCode AbutBodyEdgeMoments_Private(AbutBody body, PetscInt side, PetscInt component, const PetscReal a[2], const PetscReal b[2],
                                            PetscBool whole, PetscReal m[])
 {

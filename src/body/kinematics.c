@@ -224,9 +224,38 @@ PetscBool AbutBodyOnAxis_Private(AbutBody body, const PetscReal x[2])
   return (PetscBool)(PetscAbsReal(x[0]) <= 1e-12 * upper[0]);
 }
 
+/* A side on the axis has no area that a traction could act on, and moves along the axis only */
+static PetscErrorCode AbutBodyCheckAxis_Private(AbutBody body, PetscInt side)
+{
+  const char      *name;
+  const PetscReal *x;
+  PetscReal        u = 0.;
+  PetscInt         n;
+
+  PetscFunctionBegin;
+  PetscCall(AbutMeshGetSideName(body->mesh, side, &name));
+  PetscCall(AbutMeshGetSideSegments(body->mesh, side, &n, &x));
+  for (PetscInt k = 0; k < 2 * n; ++k)
+    if (!AbutBodyOnAxis_Private(body, x + 2 * k)) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt d = 0; d < 2; ++d) {
+    const AbutCondition *c = &body->condition[side][d];
+
+    AbutCheckInput(c->type != ABUT_TRACTION || !c->value, PetscObjectComm((PetscObject)body),
+                   "%s_bc_%s_t%d: the side is the axis, which has no area; leave it out", ((PetscObject)body)->name, name, (int)d + 1);
+    for (PetscInt k = 0; k < 2 * n && !d && c->type == ABUT_DISPLACEMENT; ++k) {
+      PetscCall(AbutExpressionEvaluate(c->value, x + 2 * k, &u));
+      AbutCheckInput(u == 0., PetscObjectComm((PetscObject)body),
+                     "%s_bc_%s_u1: %g, but the side is the axis, which stays; give 0, or leave it out", ((PetscObject)body)->name, name,
+                     (double)u);
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode AbutBodyCheckKinematics_Private(AbutBody body)
 {
   PetscReal lower[2], upper[2];
+  PetscInt  nsides;
 
   PetscFunctionBegin;
   if (body->kinematics != ABUT_AXISYMMETRIC) PetscFunctionReturn(PETSC_SUCCESS);
@@ -234,5 +263,7 @@ PetscErrorCode AbutBodyCheckKinematics_Private(AbutBody body)
   AbutCheckInput(lower[0] >= 0. || AbutBodyOnAxis_Private(body, lower), PetscObjectComm((PetscObject)body),
                  "%s_mesh_*: begins at x = %g; with axial symmetry x is the radius, give a mesh in x >= 0", ((PetscObject)body)->name,
                  (double)lower[0]);
+  PetscCall(AbutMeshGetSideCount(body->mesh, &nsides));
+  for (PetscInt s = 0; s < nsides; ++s) PetscCall(AbutBodyCheckAxis_Private(body, s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

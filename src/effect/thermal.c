@@ -14,8 +14,9 @@
    grow by (1 + nu) a T in the plane and leaves s33 = -E a T; a sheet in plane stress and a body with axial symmetry grow freely.
    `energy.strain` is the elastic energy, `energy.work` what is left of the work when that on this strain is taken off.
 
-   A temperature that is linear in x and y leaves no stress in the plane of a free body, and every estimator can judge it; for others there
-   is `residual`. Bodies of different materials take an effect each, effects on one body add up. In the log it is "AbutThermal".
+   A temperature that is linear in x and y leaves no stress in the plane of a free body, unless it is one of revolution, and every
+   estimator can judge it; for others there is `residual`. Bodies of different materials take an effect each, effects on one body add up. In
+   the log it is "AbutThermal".
 
    Limits: the temperature is given and not computed; material constants do not change with it; one coefficient for all directions. With
    order 1 a temperature that varies inside the cells leaves a stress in them of the size of the discretisation error.

@@ -103,7 +103,8 @@ PetscErrorCode AbutInterfaceSetFromOptions(AbutInterface iface)
    is kept until the meshes change. With bodies that bend easily it may be so large that no relaxation is of use.
 
    With friction H 2(1+nu)/E, what a layer gives under tangential tractions, takes the place of H(1-nu^2)/E. Bodies whose far sides are free
-   along them give way more.
+   along them give way more, and so do narrow ones under shear: there, too, the computed one is the right one. A sweep is then no gradient
+   step, and the bound no proof.
 
    Limits: theta > 0; every body is held by itself.
 

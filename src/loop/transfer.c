@@ -140,12 +140,17 @@ PetscErrorCode AbutInterfaceTransferTrace(AbutInterface iface, Vec x)
                    "restart: the checkpoint has no traces to begin with; it was written with scene_cold: give that here, too");
   for (PetscInt t = 0; t < 2 * iface->npairs; ++t) {
     AbutBody        bodies[2];
-    PetscInt        sides[2], element = 0;
+    PetscInt        sides[2], element = 0, each;
     const AbutSide *side;
 
     if (iface->bodyof[t] < 0) continue;
     PetscCall(AbutPairGetBodies(iface->pair[t / 2], bodies, sides));
+    PetscCall(AbutPairGetComponents(iface->pair[t / 2], &each));
     PetscCall(AbutBodyGetSide(bodies[t % 2], sides[t % 2], &side));
+    if (each != iface->old[t].each) { /* one chord has become an arc */
+      PetscCall(PetscArrayzero(iface->x + iface->offset[t], each * side->n));
+      continue;
+    }
     for (PetscInt i = 0; i < side->n; ++i)
       AbutOldTraceValue_Private(&iface->old[t], side->x + 2 * i, &element, iface->x + iface->offset[t] + iface->old[t].each * i);
   }

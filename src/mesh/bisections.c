@@ -180,7 +180,7 @@ PetscErrorCode AbutBisectionsFollow_Private(AbutMesh mesh, DMPlexTransform trans
   if (mesh->first->curved) {
     PetscCall(AbutBisectionsMove_Private(mesh, transform, old, dm));
     PetscCall(AbutTrianglesGetAreas_Private(dm, moved));
-    for (PetscInt c = 0; c < newEnd - newStart; ++c) bad += moved[c] / area[c] < ABUT_CURVE_AREA;
+    for (PetscInt c = 0; c < newEnd - newStart; ++c) bad += !(moved[c] / area[c] >= ABUT_CURVE_AREA); /* nor is it no number */
     PetscCall(AbutFirstCheckMoved_Private(mesh, bad));
   }
   PetscCall(PetscFree3(oldarea, area, moved));

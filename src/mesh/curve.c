@@ -1,4 +1,5 @@
 #include "first.h" /*I "abutmesh.h" I*/
+#include <math.h>
 #include <stdio.h>
 
 /* Curved sides: the vertices by which a mesh is refined there move to the nearest point of the curve */
@@ -22,7 +23,8 @@ PetscErrorCode AbutCurveDestroy_Private(AbutCurve *curve)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Newton's method along the gradient, which stands on the curve where it ends */
+/* Newton's method along the gradient, which stands on the curve where it ends; where it does not end, or there is no gradient, the point is
+   no number, which whoever looks at areas or distances finds */
 static PetscErrorCode AbutCurveNewton_Private(AbutCurve curve, PetscReal x[2])
 {
   const PetscReal h = ABUT_CURVE_DIFFERENCE * curve->length, end = PETSC_SQRT_MACHINE_EPSILON * h;
@@ -42,11 +44,12 @@ static PetscErrorCode AbutCurveNewton_Private(AbutCurve curve, PetscReal x[2])
       g[d] = (up - down) / (2. * h);
     }
     g2 = g[0] * g[0] + g[1] * g[1];
-    if (g2 <= 0.) break;
+    if (!(g2 > 0.)) break;
     step = f / g2;
     for (PetscInt d = 0; d < 2; ++d) x[d] -= step * g[d];
-    if (PetscAbsReal(step) * PetscSqrtReal(g2) <= end) break;
+    if (PetscAbsReal(step) * PetscSqrtReal(g2) <= end) PetscFunctionReturn(PETSC_SUCCESS);
   }
+  x[0] = x[1] = NAN;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -144,6 +147,11 @@ PetscErrorCode AbutMeshSetCurve(AbutMesh mesh, PetscInt side, const char key[], 
 
     PetscCall(AbutFirstMoveToCurve_Private(mesh->first, side, y));
     distance = PetscSqrtReal(PetscSqr(y[0] - x[2 * k]) + PetscSqr(y[1] - x[2 * k + 1]));
+    AbutCheckInput(!PetscIsNanReal(distance), comm,
+                   "%s: from the vertex (%g, %g) of the file there is no way to a curve \"%s\" = 0; give a formula that is 0 on it, and "
+                   "has a "
+                   "gradient there",
+                   key, (double)x[2 * k], (double)x[2 * k + 1], text);
     AbutCheckInput(distance <= ABUT_CURVE_FITS * curve->length, comm,
                    "%s: the vertex (%g, %g) of the file is %g away from \"%s\"; give the curve on which the side lies", key,
                    (double)x[2 * k], (double)x[2 * k + 1], (double)distance, text);

@@ -73,6 +73,9 @@ static PetscErrorCode AbutGmshEntities_Private(AbutGmshFile *f)
 
       for (PetscInt j = 0; j < (d ? 6 : 3); ++j) (void)AbutGmshReal_Private(r);
       k = AbutGmshCount_Private(r, 8, 2);
+      if ((d == 1 || d == 2) && k > 1 && !AbutGmshFailed_Private(r))
+        AbutGmshFail_Private(r, d == 1 ? "a curve belongs to several physical curves, and a side needs one"
+                                       : "a surface belongs to several physical surfaces, and a body needs one");
       for (size_t j = 0; j < k && !AbutGmshFailed_Private(r); ++j) {
         const PetscInt64 p = AbutGmshInt_Private(r, 4);
 

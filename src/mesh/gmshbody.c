@@ -126,6 +126,9 @@ static PetscErrorCode AbutGmshVertices_Private(const AbutGmshFile *f, AbutGmsh *
     PetscInt              *line = out->line + 3 * out->nlines;
 
     if (!e->physical || a[0] < 0 || a[1] < 0 || vertex[a[0]] < 0 || vertex[a[1]] < 0) continue;
+    if ((e->physical < 0 || e->physical > PETSC_MAX_INT) && !fault->text[0])
+      PetscCall(PetscSNPrintf(fault->text, sizeof(fault->text), "a physical curve has the number %lld; give one from 1 to %lld",
+                              (long long)e->physical, (long long)PETSC_MAX_INT));
     for (PetscInt k = 0; k < 2; ++k) line[k] = vertex[a[k]];
     line[2] = (PetscInt)e->physical;
     ++out->nlines;

@@ -110,8 +110,18 @@ static PetscErrorCode AbutHalvesPair_Private(const AbutGmsh *g, PetscInt n, cons
       const PetscInt  key[2] = {half[i].low, half[i].high};
       const PetscInt *line   = (const PetscInt *)bsearch(key, g->line, (size_t)g->nlines, 3 * sizeof(PetscInt), AbutLineCompare_Private);
 
-      if (line) cellside[half[i].corner] = line[2];
-      else if (!missing++) first = i;
+      if (line) {
+        const PetscInt *before = line - 3, *behind = line + 3;
+
+        if ((line > g->line && !AbutLineCompare_Private(before, key) && before[2] != line[2]) ||
+            (behind < g->line + 3 * g->nlines && !AbutLineCompare_Private(behind, key) && behind[2] != line[2])) {
+          PetscCall(PetscSNPrintf(fault->text, sizeof(fault->text),
+                                  "the line from (%g, %g) to (%g, %g) belongs to two physical curves; give it one", (double)x[0],
+                                  (double)x[1], (double)y[0], (double)y[1]));
+          PetscFunctionReturn(PETSC_SUCCESS);
+        }
+        cellside[half[i].corner] = line[2];
+      } else if (!missing++) first = i;
     }
   }
   if (missing)

@@ -107,7 +107,7 @@ static PetscInt AbutQuadPlaceIsFolded_Private(const AbutQuadPlace *q)
     const PetscReal *a = q->x[k], *b = q->x[(k + 1) % 4], *d = q->x[(k + 3) % 4],
                     size = PetscMax(PetscSqr(b[0] - a[0]) + PetscSqr(b[1] - a[1]), PetscSqr(d[0] - a[0]) + PetscSqr(d[1] - a[1]));
 
-    if ((b[0] - a[0]) * (d[1] - a[1]) - (b[1] - a[1]) * (d[0] - a[0]) <= ABUT_CURVE_AREA * ABUT_CURVE_AREA * size) return 1;
+    if (!((b[0] - a[0]) * (d[1] - a[1]) - (b[1] - a[1]) * (d[0] - a[0]) > ABUT_CURVE_AREA * ABUT_CURVE_AREA * size)) return 1;
   }
   return 0;
 }

@@ -297,7 +297,7 @@ PetscErrorCode AbutPairFrictionState_Private(AbutPair pair, const PetscReal u1[]
     if (p[i] <= 0.) continue;
     state->slip_max = PetscMax(state->slip_max, PetscAbsReal(s[i]));
     if (PetscAbsReal(t) < (1. - ABUT_STICKS) * most) state->stick_length += pair->length[i];
-    misfit          = PetscMax(misfit, PetscMax(PetscAbsReal(slip) * (most - PetscAbsReal(t)), -slip * t));
+    misfit          = PetscMax(misfit, PetscMax(PetscAbsReal(slip) * PetscMin(largest, most - PetscAbsReal(t)), -slip * t));
     state->friction = PetscMax(state->friction, (PetscAbsReal(t) - most) / largest);
   }
   if (largest > 0.)

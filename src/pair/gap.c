@@ -135,6 +135,33 @@ PetscErrorCode AbutPairGetNodeGap(AbutPair pair, PetscInt i, PetscReal *gap)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+#define ABUT_DISTANCE 2. /* what an obstacle's expression changes by is at most so many times the way, and at least that part of it */
+
+/* Is the expression of an obstacle a distance at a point, or nearly? Otherwise its change of sign would not be found. h is the length of a
+   segment of the side. */
+static PetscErrorCode AbutPairCheckDistance_Private(AbutPair pair, const PetscReal x[2], PetscReal h)
+{
+  const PetscReal step = 1e-4 * h;
+  PetscReal       g[2], size;
+
+  PetscFunctionBegin;
+  for (PetscInt d = 0; d < 2; ++d) {
+    PetscReal at[2] = {x[0], x[1]}, up, down;
+
+    at[d] = x[d] + step;
+    PetscCall(AbutExpressionEvaluate(pair->obstacle, at, &up));
+    at[d] = x[d] - step;
+    PetscCall(AbutExpressionEvaluate(pair->obstacle, at, &down));
+    g[d] = (up - down) / (2. * step);
+  }
+  size = PetscSqrtReal(g[0] * g[0] + g[1] * g[1]);
+  AbutCheckInput(size <= ABUT_DISTANCE && size >= 1. / ABUT_DISTANCE, PetscObjectComm((PetscObject)pair),
+                 "%s_pair_obstacle: no distance at (%g, %g), where it changes by %.3g in a way of 1; give for example y, or "
+                 "sqrt(x^2+(y-8)^2)-8",
+                 ((PetscObject)pair)->name, (double)x[0], (double)x[1], (double)size);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 #define ABUT_SAMPLES 32
 
 /*@
@@ -172,6 +199,7 @@ PetscErrorCode AbutPairCheck(AbutPair pair)
       const PetscReal x[2] = {(1. - z) * p[4 * i] + z * p[4 * i + 2], (1. - z) * p[4 * i + 1] + z * p[4 * i + 3]};
 
       PetscCall(AbutExpressionEvaluate(given, x, &gap));
+      if (pair->obstacle) PetscCall(AbutPairCheckDistance_Private(pair, x, PetscSqrtReal(PetscSqr(p[2] - p[0]) + PetscSqr(p[3] - p[1]))));
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -130,6 +130,7 @@ PetscErrorCode AbutPairSetFromOptions(AbutPair pair, PetscInt nbodies, AbutBody 
   PetscCall(AbutPairObstacleFromOptions_Private(pair));
   PetscCall(AbutPairFrictionFromOptions_Private(pair));
   PetscCall(AbutPairCheckFacing_Private(pair));
+  PetscCall(AbutPairCheckTractions_Private(pair));
   PetscCall(AbutPairSetTheta_Private(pair));
   PetscCall(AbutLogEventGet(pair->body[1] ? "AbutPairSetUp" : "AbutObstacle", ABUTPAIR_CLASSID, &pair->event));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -116,6 +116,7 @@ PetscErrorCode AbutPairView(AbutPair pair, PetscViewer viewer)
 
   PetscFunctionBegin;
   if (pair->gap) PetscCall(AbutExpressionGetText(pair->gap, &gap));
+  if (pair->obstacle) PetscCall(AbutExpressionGetText(pair->obstacle, &gap));
   for (PetscInt s = 0; s < 2 && pair->body[s]; ++s) {
     AbutMesh mesh;
 

@@ -194,6 +194,57 @@ static PetscErrorCode AbutPairCheckStraight_Private(AbutPair pair, const char *c
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A side in contact is one piece, and has two ends if it is to meet another one */
+static PetscErrorCode AbutPairCheckPieces_Private(AbutPair pair, PetscInt s)
+{
+  const char      *name, *side;
+  const PetscReal *x;
+  PetscBool        pieces = PETSC_FALSE;
+  PetscInt         n;
+  AbutMesh         mesh;
+
+  PetscFunctionBegin;
+  PetscCall(AbutBodyGetName(pair->body[s], &name));
+  PetscCall(AbutBodyGetMesh(pair->body[s], &mesh));
+  PetscCall(AbutMeshGetSideName(mesh, pair->side[s], &side));
+  PetscCall(AbutPairGetSegments_Private(pair, s, &n, &x));
+  for (PetscInt k = 1; k < n; ++k)
+    if (x[4 * k] != x[4 * k - 2] || x[4 * k + 1] != x[4 * k - 1]) pieces = PETSC_TRUE;
+  AbutCheckInput(!pieces, PetscObjectComm((PetscObject)pair),
+                 "%s_pair_sides: side \"%s\" of %s is in several pieces; give each a name of its own, and a pair",
+                 ((PetscObject)pair)->name, side, name);
+  AbutCheckInput(!pair->body[1] || n < 2 || x[0] != x[4 * n - 2] || x[1] != x[4 * n - 1], PetscObjectComm((PetscObject)pair),
+                 "%s_pair_sides: side \"%s\" of %s closes on itself; cut it in two, with a name and a pair for each half, or give half of "
+                 "the "
+                 "body",
+                 ((PetscObject)pair)->name, side, name);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Estimators take a given traction for all there is; contact may act in it where it has more than a normal component of its own */
+PetscErrorCode AbutPairCheckTractions_Private(AbutPair pair)
+{
+  PetscBool straight;
+
+  PetscFunctionBegin;
+  PetscCall(AbutPairAreStraight_Private(pair, &straight));
+  if (straight && !pair->friction) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt k = 0; k < 4 && pair->body[k / 2]; ++k) {
+    AbutConditionType type;
+    AbutMesh          mesh;
+    const char       *body, *side;
+
+    PetscCall(AbutBodyGetCondition(pair->body[k / 2], pair->side[k / 2], k % 2, &type));
+    PetscCall(AbutBodyGetName(pair->body[k / 2], &body));
+    PetscCall(AbutBodyGetMesh(pair->body[k / 2], &mesh));
+    PetscCall(AbutMeshGetSideName(mesh, pair->side[k / 2], &side));
+    AbutCheckInput(type != ABUT_TRACTION, PetscObjectComm((PetscObject)pair), "%s_bc_%s_t%d: the side is in contact (%s), %s; leave it out",
+                   body, side, (int)(k % 2) + 1, ((PetscObject)pair)->name,
+                   pair->friction ? "with friction, which acts along it too" : "and curved, so that pressures act in both components");
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The two sides must lie against each other: opposite normals somewhere, and near there */
 PetscErrorCode AbutPairCheckFacing_Private(AbutPair pair)
 {
@@ -204,6 +255,7 @@ PetscErrorCode AbutPairCheckFacing_Private(AbutPair pair)
   PetscBool        straight;
 
   PetscFunctionBegin;
+  for (PetscInt s = 0; s < 2 && pair->body[s]; ++s) PetscCall(AbutPairCheckPieces_Private(pair, s));
   if (!pair->body[1]) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt s = 0; s < 2; ++s) PetscCall(AbutBodyGetName(pair->body[s], &body[s]));
   PetscCall(AbutPairAreStraight_Private(pair, &straight));

@@ -21,7 +21,8 @@ PetscErrorCode AbutSceneCheckpointFromOptions_Private(AbutScene scene)
   for (PetscInt i = 0; i < 2; ++i)
     AbutCheckInput(!set[i] || path[i][0], comm, "%s: no file is named; give the name of a file", i ? "restart" : "checkpoint");
   AbutCheckInput(scene->adaptor || scene->nsteps > 1 || !(set[0] || set[1]), comm,
-                 "%s: the scene has no adaptor, so it has one cycle and nothing to go on with; give adaptor_type, or leave it out",
+                 "%s: the scene has no adaptor, so it has one cycle and nothing to go on with; give adaptor_type or scene_load_steps, or "
+                 "leave it out",
                  set[0] ? "checkpoint" : "restart");
   AbutCheckInput(scene->every > 0, comm, "checkpoint_every: %" PetscInt_FMT " is no number of cycles; give 1 or more", scene->every);
   if (set[0]) {

@@ -20,7 +20,7 @@ PetscErrorCode AbutSceneWarnOfOverlap_Private(AbutScene scene)
     PetscCall(AbutPairGetName(scene->pair[i], &name));
     PetscCall(PetscPrintf(PetscObjectComm((PetscObject)scene),
                           "warning: pair %s: at first the sides overlap, by %.6g at (%.6g, %.6g), and contact pushes them apart; if this "
-                          "is not meant, mend %s_pair_gap or the boxes\n",
+                          "is not meant, mend %s_pair_gap or the meshes\n",
                           name, (double)depth, (double)x[0], (double)x[1], name));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

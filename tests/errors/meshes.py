@@ -52,3 +52,7 @@ def bad_meshes():
     yield "vertex.msh", text(join(box((0, 0), (1, 1), 2, 2), box((1, 1), (2, 2), 2, 2)))
     yield "pieces.msh", text(join(box((0, 0), (1, 1), 2, 2), box((2, 0), (3, 1), 2, 2)))
     yield "over.msh", text(change(PLATE, cells=lambda c: c + c[:1]))
+    yield "tag.msh", old.replace("\n1 1 2 1 1 1 2\n", "\n1 1 2 4294967295 1 1 2\n").encode()
+    yield "groups.msh", old.replace("\n1 1 2 1 1 1 2\n", "\n1 1 2 1 1 1 2\n99 1 2 2 1 1 2\n").replace("$Elements\n20\n", "$Elements\n21\n").encode()
+    move = lambda lines: {**lines, "top": lines["top"][:1] + lines["top"][2:], "right": lines["right"] + lines["top"][1:2]}
+    yield "split.msh", text(change(PLATE, lines=move))

@@ -68,6 +68,7 @@ static inline PetscReal AbutSegmentWeight_Private(AbutPair pair, PetscInt g, Pet
 }
 
 PETSC_INTERN PetscErrorCode AbutPairCheckFacing_Private(AbutPair);
+PETSC_INTERN PetscErrorCode AbutPairCheckTractions_Private(AbutPair);
 PETSC_INTERN PetscErrorCode AbutPairGetDistance_Private(AbutPair, PetscReal *);
 PETSC_INTERN PetscErrorCode AbutPairObstacleFromOptions_Private(AbutPair);
 PETSC_INTERN PetscErrorCode AbutPairCloseGap_Private(AbutPair, const PetscReal[2], PetscReal *);
