@@ -292,9 +292,8 @@ PetscErrorCode AbutEstimatorCheck(AbutEstimator est, AbutBody body)
   PetscCall(AbutBodyGetName(body, &name));
   PetscCall(AbutBodyFindFeature(body, est->features, &what, &who));
   AbutCheckInput(!what, PetscObjectComm((PetscObject)est),
-                 "estimator_type: %s does not know how to judge %s with %s, that of %s; give %sleave %s out of adaptor_bodies",
-                 ((PetscObject)est)->type_name, name, what, who,
-                 strcmp(((PetscObject)est)->type_name, ABUTESTIMATORRESIDUAL) ? "residual, or " : "an adaptor, and ", name);
+                 "estimator_type: %s does not know how to judge %s with %s, that of %s; give residual, or leave %s out of adaptor_bodies",
+                 ((PetscObject)est)->type_name, name, what, who, name);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
