@@ -141,6 +141,17 @@ static inline AbutBody CkBodyOn(MPI_Comm comm, const char name[], CkField *field
   return body;
 }
 
+/* The axis of a body of revolution has no area on which a traction could act */
+static inline PetscBool CkIsAxis(AbutBody body, AbutMesh mesh, PetscInt side)
+{
+  AbutKinematics kinematics;
+  PetscReal      ends[4], normal[2];
+
+  CkOk(AbutBodyGetKinematics(body, &kinematics));
+  CkOk(AbutMeshGetSideEnds(mesh, side, ends, normal));
+  return (PetscBool)(kinematics == ABUT_AXISYMMETRIC && ends[0] == 0. && ends[2] == 0.);
+}
+
 /* The field's displacements (u) or tractions (t) on a side, a letter per component, - for none: CkGive(body, &field, "left", "ut") */
 static inline void CkGive(AbutBody body, CkField *field, const char side[], const char what[2])
 {
@@ -155,7 +166,7 @@ static inline void CkGive(AbutBody body, CkField *field, const char side[], cons
     data->side      = s;
     data->component = d;
     if (what[d] == 'u') CkOk(AbutBodySetDisplacement(body, side, d, CkDisplacement, data));
-    if (what[d] == 't') CkOk(AbutBodySetTraction(body, side, d, CkTraction, data));
+    if (what[d] == 't' && !CkIsAxis(body, mesh, s)) CkOk(AbutBodySetTraction(body, side, d, CkTraction, data));
   }
 }
 
