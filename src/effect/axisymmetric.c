@@ -7,7 +7,8 @@
 
    Notes:
    It has no keys, and is for all bodies of a scene. Their meshes are half sections in x >= 0; points on the axis stay there without a
-   condition of their own, and forces and energies are those of a whole turn. s33 is the hoop stress. It logs nothing.
+   condition of their own, and forces and energies are those of a whole turn. s33 is the hoop stress. In
+   the log it is "AbutAxisymmetric", once a body.
 
    Limits: no twist. The estimator is `residual`.
 

@@ -7,7 +7,7 @@
 
    Notes:
    It has no keys but `-NAME_effect_bodies`. In a pair of a sheet and a body in plane strain each has the thickness 1. It
-   logs nothing.
+   logs "AbutPlane_stress" once a body.
 
    Limits: sheets of one thickness that do not buckle.
 
@@ -18,14 +18,18 @@ M*/
 PetscErrorCode AbutEffectSetKinematics_Private(AbutEffect effect, AbutBody body, AbutKinematics kinematics, PetscInt feature)
 {
   AbutKinematics present;
+  PetscLogEvent  event;
 
   PetscFunctionBegin;
   PetscCall(AbutBodyGetKinematics(body, &present));
   AbutCheckInput(present == ABUT_PLANE_STRAIN, PetscObjectComm((PetscObject)effect),
                  "%s_effect_type: %s for %s, which has %s already; leave one of the two out", ((PetscObject)effect)->name,
                  ((PetscObject)effect)->type_name, ((PetscObject)body)->name, AbutKinematicsNames[present]);
+  PetscCall(AbutEffectGetEvent(effect, &event));
+  PetscCall(PetscLogEventBegin(event, effect, 0, 0, 0));
   PetscCall(AbutBodySetKinematics(body, kinematics));
   PetscCall(AbutBodyAddFeature(body, ((PetscObject)effect)->name, feature));
+  PetscCall(PetscLogEventEnd(event, effect, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -249,7 +249,7 @@ PetscErrorCode AbutMeshIsSideStraight(AbutMesh mesh, PetscInt side, PetscBool *s
   last = x + 4 * n - 2;
   for (PetscInt i = 0; i < 2; ++i) d[i] = last[i] - x[i];
   length2   = d[0] * d[0] + d[1] * d[1];
-  *straight = (PetscBool)(length2 > 0. && !(mesh->first && mesh->first->curve[side]));
+  *straight = (PetscBool)(length2 > 0.);
   for (PetscInt k = 0; k + 1 < n && *straight; ++k) {
     const PetscReal *p = x + 4 * k + 2, *next = x + 4 * (k + 1);
 
