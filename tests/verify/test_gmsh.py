@@ -120,7 +120,8 @@ def moment(n=40):
 
 def test_a_box_is_a_box():
     scene = """-scene_bodies lower,upper -scene_pairs mid -mid_pair_bodies upper,lower -mid_pair_sides bottom,top -mid_pair_gap 1e-3*x^2
-    -mid_pair_penalty 0.05 -snes_rtol 1e-11 -scene_loop_share 0 -lower_material_young 2.1e5 -lower_material_poisson 0.3 -lower_bc_left_u1 0 -lower_bc_bottom_u2 0
+    -mid_pair_penalty 0.05 -mid_pair_height 1 -snes_rtol 1e-11 -scene_loop_share 0 -lower_material_young 2.1e5 -lower_material_poisson 0.3
+    -lower_bc_left_u1 0 -lower_bc_bottom_u2 0
     -upper_material_young 2.1e5 -upper_material_poisson 0.3 -upper_bc_left_u1 0 -upper_bc_top_u2 -1.366e-3
     -adaptor_type threshold -adaptor_threshold 0.2 -adaptor_bodies lower -estimator_type zz -adaptor_max_level 4
     -upper_mesh_size 0.05+0.3*abs(x-1)""".split()
