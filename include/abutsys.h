@@ -81,6 +81,9 @@ PETSC_EXTERN PetscErrorCode AbutSolveBand(PetscInt, PetscInt, PetscReal[], Petsc
 PETSC_EXTERN PetscErrorCode AbutPluginAppend(MPI_Comm, const char[]);
 PETSC_EXTERN PetscErrorCode AbutPluginLoad(MPI_Comm, const char[], const char[], PetscBool *);
 PETSC_EXTERN PetscErrorCode AbutPluginListAvailable(const char[], char[], size_t);
+PETSC_EXTERN PetscErrorCode AbutPluginListTypes(const char[], PetscFunctionList, char[], size_t);
+PETSC_EXTERN PetscErrorCode AbutPluginFindType(MPI_Comm, const char[], const char[], const char[], const PetscFunctionList *, const char[],
+                                               PetscVoidFunction *);
 PETSC_EXTERN PetscErrorCode AbutPluginAppendFromOptions(MPI_Comm);
 PETSC_EXTERN PetscErrorCode AbutPluginViewType(PetscViewer, const char[], const char[], PetscVoidFunction);
 PETSC_EXTERN PetscErrorCode AbutPluginSameFile(PetscVoidFunction, PetscVoidFunction, PetscBool *);

@@ -1,5 +1,4 @@
 #include <abut/private/effectimpl.h> /*I "abuteffect.h" I*/
-#include <abut/private/pluginimpl.h>
 
 /* The types of effects there are, and what a type tells the class and keeps there */
 
@@ -56,43 +55,15 @@ PetscErrorCode AbutEffectRegister(const char name[], PetscErrorCode (*create)(Ab
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What there is to choose from: the files of plugins, and what has registered */
-static PetscErrorCode AbutEffectListNames_Private(char names[], size_t len)
-{
-  const char **registered = NULL;
-  int          n          = 0;
-
-  PetscFunctionBegin;
-  PetscCall(AbutPluginListAvailable("effect", names, len));
-  PetscCall(PetscFunctionListGet(AbutEffectList, &registered, &n));
-  for (int i = 0; i < n && registered[i]; ++i)
-    PetscCall(AbutListAddItem_Private(names, len, registered[i])); /* n counts a trailing NULL in PETSc 3.18 */
-  PetscCall(PetscFree(registered));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode AbutEffectFindType_Private(AbutEffect effect, AbutEffectType type, PetscErrorCode (**create)(AbutEffect))
 {
-  MPI_Comm    comm = PetscObjectComm((PetscObject)effect);
-  const char *name = ((PetscObject)effect)->name;
-  char        names[512];
-  PetscBool   found;
+  char key[256];
 
   PetscFunctionBegin;
-  PetscCall(PetscFunctionListFind(AbutEffectList, type, create));
-  if (*create) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(AbutPluginLoad(comm, "effect", type, &found));
-  PetscCall(PetscFunctionListFind(AbutEffectList, type, create));
-  if (*create) PetscFunctionReturn(PETSC_SUCCESS);
-  AbutCheckInput(!found, comm,
-                 "%s_effect_type: libeffect_%s.so was opened but registers no effect \"%s\"; its AbutEffectRegister() must use the name of "
-                 "the file",
-                 name, type, type);
-  PetscCall(AbutEffectListNames_Private(names, sizeof(names)));
-  SETERRQ(comm, PETSC_ERR_USER_INPUT,
-          "%s_effect_type: no effect named \"%s\"; there are: %s (a plugin from elsewhere is loaded with -plugin "
-          "path/to/libeffect_NAME.so)",
-          name, type, names);
+  PetscCall(PetscSNPrintf(key, sizeof(key), "%s_effect_type", ((PetscObject)effect)->name));
+  PetscCall(AbutPluginFindType(PetscObjectComm((PetscObject)effect), key, "effect", "Effect", &AbutEffectList, type,
+                               (PetscVoidFunction *)create));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The event "AbutGravity" of type "gravity", registered by its first effect */
@@ -191,7 +162,7 @@ PetscErrorCode AbutEffectViewTypes(MPI_Comm comm, PetscViewer viewer)
 
   PetscFunctionBegin;
   PetscCall(AbutEffectInitializePackage_Private());
-  PetscCall(AbutEffectListNames_Private(names, sizeof(names)));
+  PetscCall(AbutPluginListTypes("effect", AbutEffectList, names, sizeof(names)));
   while ((name = strtok_r(NULL, ", ", &rest))) {
     AbutEffect effect;
     PetscErrorCode (*create)(AbutEffect);

@@ -1,5 +1,4 @@
 #include <abut/private/estimatorimpl.h> /*I "abutestimator.h" I*/
-#include <abut/private/pluginimpl.h>
 
 PetscClassId ABUTESTIMATOR_CLASSID;
 
@@ -101,43 +100,12 @@ PetscErrorCode AbutEstimatorDestroy(AbutEstimator *est)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What there is to choose from: the files of plugins, and what else has registered */
-static PetscErrorCode AbutEstimatorListNames_Private(char names[], size_t len)
-{
-  const char **registered = NULL;
-  int          n          = 0;
-
-  PetscFunctionBegin;
-  PetscCall(AbutPluginListAvailable("estimator", names, len));
-  PetscCall(PetscFunctionListGet(AbutEstimatorList, &registered, &n));
-  for (int i = 0; i < n && registered[i]; ++i)
-    PetscCall(AbutListAddItem_Private(names, len, registered[i])); /* n counts a trailing NULL in PETSc 3.18 */
-  PetscCall(PetscFree(registered));
-  if (!names[0]) PetscCall(PetscStrncpy(names, "none", len));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode AbutEstimatorFindOne_Private(AbutEstimator est, AbutEstimatorType type, PetscErrorCode (**create)(AbutEstimator))
 {
-  MPI_Comm  comm = PetscObjectComm((PetscObject)est);
-  PetscBool found;
-  char      names[512];
-
   PetscFunctionBegin;
-  PetscCall(PetscFunctionListFind(AbutEstimatorList, type, create));
-  if (*create) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(AbutPluginLoad(comm, "estimator", type, &found));
-  PetscCall(PetscFunctionListFind(AbutEstimatorList, type, create));
-  if (*create) PetscFunctionReturn(PETSC_SUCCESS);
-  AbutCheckInput(!found, comm,
-                 "estimator_type: libestimator_%s.so was opened but registers no estimator \"%s\"; its AbutEstimatorRegister() must use "
-                 "the name of the file",
-                 type, type);
-  PetscCall(AbutEstimatorListNames_Private(names, sizeof(names)));
-  SETERRQ(comm, PETSC_ERR_USER_INPUT,
-          "estimator_type: no estimator named \"%s\"; there are: %s (a plugin from elsewhere is loaded with -plugin "
-          "path/to/libestimator_NAME.so)",
-          type, names);
+  PetscCall(AbutPluginFindType(PetscObjectComm((PetscObject)est), "estimator_type", "estimator", "Estimator", &AbutEstimatorList, type,
+                               (PetscVoidFunction *)create));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Several names separated by commas are all looked up before any estimator is made */
@@ -382,7 +350,7 @@ PetscErrorCode AbutEstimatorViewTypes(MPI_Comm comm, PetscViewer viewer)
 
   PetscFunctionBegin;
   PetscCall(AbutEstimatorInitializePackage());
-  PetscCall(AbutEstimatorListNames_Private(names, sizeof(names)));
+  PetscCall(AbutPluginListTypes("estimator", AbutEstimatorList, names, sizeof(names)));
   while ((name = strtok_r(NULL, ", ", &rest))) {
     AbutEstimator est;
     PetscErrorCode (*create)(AbutEstimator);
