@@ -100,11 +100,11 @@ find_missing() {
   [ "$need" = build ] && return
   [ -n "$python" ] || want "Python 3 with Matplotlib and h5py" "python3 python3-matplotlib python3-h5py"
   pc --exists check || want "Check, the unit test framework" "check"
+  [ "$need" = all ] || "$python" -c 'import ensurepip' 2>/dev/null || want "venv for Python 3" "python3-venv"
   [ "$need" = contribute ] || return
   has_fuzzer || want "clang with libFuzzer" "clang libclang-rt-dev"
   has valgrind || want "valgrind" "valgrind"
   has gcovr || want "gcovr" "gcovr"
-  "$python" -c 'import ensurepip' 2>/dev/null || want "venv for Python 3" "python3-venv"
 }
 
 install_packages() {
@@ -151,13 +151,18 @@ if [ -z "$slepc_libs${PETSC_DIR-}" ] && may_install && apt-cache show libslepc-r
   find_slepc
 fi
 
-if [ "$need" = test ] && may_install && ! /usr/bin/python3 -c 'import vtkmodules' 2>/dev/null && apt-cache show python3-vtk9 >/dev/null 2>&1; then
-  echo "Installing python3-vtk9, which is optional"
-  DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends python3-vtk9 >/dev/null 2>&1
+# venv IMPORT PACKAGE: a package of PyPI in .venv, which has none of the system's; IMPORT is the line of Python that needs it
+venv() {
+  .venv/bin/python -c "$1" 2>/dev/null && return
+  { [ -x .venv/bin/pip ] || "$python" -m venv .venv; } && .venv/bin/pip install --quiet --no-deps --retries 1 --timeout 20 "$2"
+}
+
+if [ "$need" = test ] && [ "$install" = install ]; then # Debian's python3-vtk9 has no reader of XDMF
+  venv 'import vtkmodules.vtkIOXdmf2' vtk==9.4.2 2>/dev/null || echo "No VTK for Python from PyPI, which is optional"
 fi
 
 if [ "$need" = contribute ]; then # the version .clang-format is written for; Debian 12 has 14, which cannot read it
-  [ -x .venv/bin/clang-format ] || { "$python" -m venv .venv && .venv/bin/pip install --quiet clang-format==18.1.8; }
+  venv 'import clang_format' clang-format==18.1.8
 elif ! answers | cmp -s - "$config"; then
   mkdir -p "$(dirname "$config")"
   answers >"$config"

@@ -2,8 +2,8 @@
 
     [time, {grid: {"points": [...], "cells": [[...], ...], "type": [...], "point": {name: rows}, "cell": {name: rows}, "field": {name: rows}}}]
 
-READER is vtkXdmfReader or vtkXdmf3Reader, ParaView's readers of XDMF 2 and 3, which Debian has in python3-paraview, not in python3-vtk9. Exit status 77: this
-Python has no such reader.
+READER is vtkXdmfReader or vtkXdmf3Reader, ParaView's readers of XDMF 2 and 3: the first is in VTK from PyPI, both in Debian's python3-paraview, none in python3-vtk9.
+Exit status 77: this Python has no such reader.
 """
 import json, os, sys, xml.etree.ElementTree as xml
 
