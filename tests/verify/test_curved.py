@@ -7,7 +7,8 @@ r^0.5445, M. L. Williams (1952).
 """
 import functools, math, os, shutil, tempfile
 
-from abut import ROOT, case, read_csv, run, run_error
+from abut import ROOT, case, run, run_error
+from uniform import ADAPTED, UNIFORM, series, share
 
 HERTZ, CYLINDERS, PLANE, PIN, COATING, LSHAPE, RECEDING = (
     os.path.join(ROOT, "examples", name) for name in
@@ -127,15 +128,6 @@ def test_bodies_may_change_places():
         case("V06", f"a with the pressures on the other body, {name}", off(pair(other, "contact_edge"), pair(one, "contact_edge")), 0.01)
 
 
-def series(scene, *options):
-    with tempfile.TemporaryDirectory() as folder:
-        run(scene, *options, f"-scene_loop_share 0 -record_csv {folder}/cycles.csv", expect=3)
-        return read_csv(f"{folder}/cycles.csv")
-
-
-UNIFORM, ADAPTED = "-adaptor_bulk 1 -adaptor_target 1e-9", "-adaptor_target 1e-9"
-
-
 @functools.lru_cache(None)
 def corner():
     """The energy of the L, with more digits than the others"""
@@ -143,24 +135,16 @@ def corner():
 
 
 def test_the_corner_has_its_order_and_adaptation_that_of_smooth_stress():
-    energy = [row["energy.strain"] for row in series(LSHAPE, UNIFORM, "-adaptor_max_level 5")]
+    energy = [row["energy.strain"] for row in series(run, LSHAPE, UNIFORM, "-adaptor_max_level 5")]
     falls = [a - b for a, b in zip(energy, energy[1:])]
     order = math.log2(falls[-2] / falls[-1]) / 2
     case("V10", "order of uniform meshes in h", order, CORNER + 0.04, CORNER - 0.02)
     fine = corner()["energy.strain"]
-    rows = [row for row in series(LSHAPE, ADAPTED, "-adaptor_max_unknowns 4000 -adaptor_max_level 24") if row["unknowns"] > 200]
+    rows = [row for row in series(run, LSHAPE, ADAPTED, "-adaptor_max_unknowns 4000 -adaptor_max_level 24") if row["unknowns"] > 200]
     x, y = [math.log(row["unknowns"]) for row in rows], [0.5 * math.log(row["energy.strain"] / fine - 1) for row in rows]
     mx, my = sum(x) / len(x), sum(y) / len(y)
     slope = sum((u - mx) * (v - my) for u, v in zip(x, y)) / sum((u - mx) ** 2 for u in x)
     case("V10", "order of adapted meshes in unknowns", -slope, 0.58, 0.45)
-
-
-def needed(rows, error, target):
-    """Unknowns of the first mesh from which on all are good enough"""
-    good = None
-    for row in rows:
-        good = (good or row["unknowns"]) if error(row) <= target else None
-    return good
 
 
 def test_adapted_meshes_take_fewer_unknowns_than_uniform_ones():
@@ -175,10 +159,8 @@ def test_adapted_meshes_take_fewer_unknowns_than_uniform_ones():
         (PIN, "energy norm", energy(pin_fine), 0.05, 12000),
         (LSHAPE, "energy norm", energy(corner()), 0.05, 8000),
     ):
-        both = [needed(series(scene, way, f"-adaptor_max_unknowns {most}"), error, target) for way in (UNIFORM, ADAPTED)]
-        name = os.path.basename(scene)[:-4]
-        print(f"{name:8s} error of {what:12s} at most {target:g}: {both[0]} unknowns in uniform meshes, {both[1]} in adapted ones")
-        assert both[1] and (not both[0] or both[1] < both[0]), both
+        meshes = [series(run, scene, way, f"-adaptor_max_unknowns {most}") for way in (UNIFORM, ADAPTED)]
+        assert share(os.path.basename(scene)[:-4], what, error, target, *meshes) < 1
 
 
 def test_files_lie_beside_the_scene_or_in_the_current_folder():

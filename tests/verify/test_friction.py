@@ -8,6 +8,7 @@ the forces P and Q of the record; the boxes are seven times as deep as the conta
 import csv, functools, math, tempfile
 
 from abut import case, read_csv, run
+from uniform import ADAPTED, series, share
 
 E, NU, MU, DELTA = 2.1e5, 0.3, 0.4, 1e-3
 SHEAR = E / (2 * (1 + NU))
@@ -104,7 +105,7 @@ def read_profile(path):
     return [[float(row[key]) for row in rows] for key in ("x", "pressure", "traction_t", "slip")]
 
 
-def cylinders(shift, *options, order=1, ranks=1):
+def cylinders(shift, *options, order=1, **keys):
     """Two boxes with the gap of cylinders, pressed together by 4e-3 that the gap lacks; cells of a hundredth on the contact"""
     words = "-scene_bodies upper,lower -scene_pairs mid -mid_pair_bodies upper,lower -mid_pair_sides bottom,top -mid_pair_friction 0.3 -mid_pair_penalty 0"
     words += " -mid_pair_gap x^2/57.6923077-4e-3 -snes_rtol 1e-12"
@@ -113,7 +114,7 @@ def cylinders(shift, *options, order=1, ranks=1):
         words += f" -{name}_mesh_box -2,{y},2,{y + 2} -{name}_mesh_cells 8,4 -{name}_mesh_order {order} -{name}_mesh_size {size}"
         words += f" -{name}_material_young {E} -{name}_material_poisson {NU}"
     words += f" -lower_bc_bottom_u1 0 -lower_bc_bottom_u2 0 -upper_bc_top_u2 0 -upper_bc_top_u1 {shift}"
-    return run(None, *words.split(), *options, ranks=ranks)
+    return run(None, *words.split(), *options, **keys)
 
 
 def traction(record, path, mu, parts):
@@ -146,6 +147,30 @@ def test_partial_slip_is_that_of_cattaneo_and_mindlin():
             case("V18", f"c/a off Cattaneo's at Q = {1 - exact**2:.2f} mu P, order {order}", abs(stick / exact - 1), 0.02)
             case("V18", f"tangential traction off Mindlin's in L2 at Q = {1 - exact**2:.2f} mu P, order {order}", error, 0.03)
             case("V18", f"sweeps, order {order}", record["sweeps"], 20)
+
+
+def even(n):
+    """Uniform meshes of both boxes of cylinders(), n by n/2 cells"""
+    return " ".join(f"-{name}_mesh_cells {n},{n // 2} -{name}_mesh_size 9" for name in ("upper", "lower"))
+
+
+def stick_off(record):
+    """c/a off Cattaneo's under the forces of the record; as far off as can be where everything slips"""
+    a, P, Q, stick = (record[f"pair.mid.{key}"] for key in ("contact_edge", "force", "tangential", "stick_length"))
+    square = 1 - Q / (0.3 * P)
+    return abs(stick / (2 * a) / math.sqrt(square) - 1) if square > 1e-6 else math.inf
+
+
+def test_partial_slip_takes_fewer_unknowns_in_adapted_meshes():
+    """The length that sticks is one of whole nodes: its error goes up and down with the place of the edge, so there are many uniform meshes, and three
+    first meshes to adapt. At half of the full sliding force, where both edges are far from the middle."""
+    for order, first, cells in (1, (16, 20, 24), range(16, 120, 8)), (2, (8, 10, 12), range(8, 60, 4)):
+        uniform = [cylinders(5e-4, even(n), order=order) for n in cells]
+        for estimator in "zz", "residual", "fembem":
+            words = f"-adaptor_type doerfler -estimator_type {estimator} -adaptor_max_unknowns 5000", ADAPTED
+            adapted = [row for n in first for row in series(functools.partial(cylinders, order=order), 5e-4, even(n), *words)]
+            part = share(f"cylinders, order {order}, {estimator}", "c/a", stick_off, 0.02, uniform, adapted)
+            case("V18", f"unknowns for c/a to 2 per cent, adapted over uniform, order {order}, {estimator}", part, 0.5)
 
 
 def test_partial_slip_is_the_same_on_all_ranks():
