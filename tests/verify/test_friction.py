@@ -162,12 +162,12 @@ def stick_off(record):
 
 
 def test_partial_slip_takes_fewer_unknowns_in_adapted_meshes():
-    """The length that sticks is one of whole nodes: its error goes up and down with the place of the edge, so there are many uniform meshes, and three
-    first meshes to adapt. At half of the full sliding force, where both edges are far from the middle."""
-    for order, first, cells in (1, (16, 20, 24), range(16, 120, 8)), (2, (8, 10, 12), range(8, 60, 4)):
+    """The length that sticks is one of whole nodes: its error goes up and down with the place of the edge, so there are many uniform meshes, and two
+    first meshes to adapt."""
+    for order, first, cells in (1, (16, 24), range(16, 120, 8)), (2, (8, 12), range(8, 60, 4)):
         uniform = [cylinders(5e-4, even(n), order=order) for n in cells]
         for estimator in "zz", "residual", "fembem":
-            words = f"-adaptor_type doerfler -estimator_type {estimator} -adaptor_max_unknowns 5000", ADAPTED
+            words = f"-adaptor_type doerfler -estimator_type {estimator} -adaptor_max_unknowns 6000", ADAPTED
             adapted = [row for n in first for row in series(functools.partial(cylinders, order=order), 5e-4, even(n), *words)]
             part = share(f"cylinders, order {order}, {estimator}", "c/a", stick_off, 0.02, uniform, adapted)
             case("V18", f"unknowns for c/a to 2 per cent, adapted over uniform, order {order}, {estimator}", part, 0.5)
