@@ -81,7 +81,9 @@ PETSC_EXTERN PetscErrorCode AbutBodyAddFeature(AbutBody, const char[], PetscInt)
 PETSC_EXTERN PetscErrorCode AbutBodyGetFeatures(AbutBody, PetscInt *);
 PETSC_EXTERN PetscErrorCode AbutBodyFindFeature(AbutBody, PetscInt, const char *[], const char *[]);
 PETSC_EXTERN PetscErrorCode AbutBodyCheck(AbutBody);
+PETSC_EXTERN PetscErrorCode AbutBodySetRanks(AbutBody, PetscMPIInt, PetscMPIInt);
 PETSC_EXTERN PetscErrorCode AbutBodySetUp(AbutBody);
+PETSC_EXTERN PetscErrorCode AbutBodySetUpAll(PetscInt, AbutBody[]);
 PETSC_EXTERN PetscErrorCode AbutBodyView(AbutBody, PetscViewer);
 PETSC_EXTERN PetscErrorCode AbutBodyDestroy(AbutBody *);
 
@@ -111,6 +113,7 @@ PETSC_EXTERN PetscErrorCode AbutBodySolveIncrement(AbutBody, Vec, Vec);
 PETSC_EXTERN PetscErrorCode AbutBodyUpdate(AbutBody, Vec, Vec);
 PETSC_EXTERN PetscErrorCode AbutBodyMove(AbutBody, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutBodyGetSolution(AbutBody, Vec *);
+PETSC_EXTERN PetscErrorCode AbutBodyGetSolved(AbutBody, PetscBool *);
 PETSC_EXTERN PetscErrorCode AbutBodyGetSolveCounts(AbutBody, PetscInt *, PetscInt *);
 PETSC_EXTERN PetscErrorCode AbutBodyGetNodeDisplacement(AbutBody, const PetscReal *[]);
 PETSC_EXTERN PetscErrorCode AbutBodyGetWork(AbutBody, PetscReal *);

@@ -72,6 +72,9 @@ PETSC_EXTERN PetscErrorCode AbutMeshSetFile(AbutMesh, const char[], const char[]
 PETSC_EXTERN PetscErrorCode AbutMeshGetFile(AbutMesh, const char *[]);
 PETSC_EXTERN PetscErrorCode AbutMeshSetCurve(AbutMesh, PetscInt, const char[], const char[]);
 PETSC_EXTERN PetscErrorCode AbutMeshSetFromOptions(AbutMesh);
+PETSC_EXTERN PetscErrorCode AbutMeshSetRanks(AbutMesh, PetscMPIInt, PetscMPIInt);
+PETSC_EXTERN PetscErrorCode AbutMeshGetRanks(AbutMesh, PetscMPIInt *, PetscMPIInt *);
+PETSC_EXTERN PetscErrorCode AbutMeshGetFirstSize(AbutMesh, PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutMeshSetUp(AbutMesh);
 PETSC_EXTERN PetscErrorCode AbutMeshView(AbutMesh, PetscViewer);
 PETSC_EXTERN PetscErrorCode AbutMeshDestroy(AbutMesh *);

@@ -58,6 +58,7 @@ PetscErrorCode AbutBodyCreate(MPI_Comm comm, const char name[], AbutBody *body)
   (*body)->cell       = &AbutCellOps_Plane;
   PetscCall(AbutMeshCreate(comm, &(*body)->mesh));
   PetscCall(PetscObjectSetOptionsPrefix((PetscObject)(*body)->mesh, prefix));
+  PetscCall(AbutBodyLeaveGroup_Private(*body));
   PetscCall(AbutBodyCreateSolver_Private(*body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -99,19 +100,8 @@ PetscErrorCode AbutBodySetFromOptions(AbutBody body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-   AbutBodySetUp - Makes mesh, operator and vectors; after its mesh has adapted, makes them anew
-
-   Collective
-
-   Input Parameter:
-.  body - the body
-
-   Level: beginner
-
-.seealso: `AbutBodySetFromOptions()`, `AbutBodySolve()`
-@*/
-PetscErrorCode AbutBodySetUp(AbutBody body)
+/* What all ranks of the body make together: mesh, vectors, boundary, conditions, loads */
+static PetscErrorCode AbutBodyDiscretize_Private(AbutBody body, PetscBool *anew)
 {
   const AbutMeshTopology *t;
   PetscInt                generation;
@@ -124,7 +114,8 @@ PetscErrorCode AbutBodySetUp(AbutBody body)
   if (body->generation < 0) PetscCall(AbutBodyCheck(body));
   PetscCall(AbutMeshSetUp(body->mesh));
   PetscCall(AbutMeshGetGeneration(body->mesh, &generation));
-  if (generation == body->generation) PetscFunctionReturn(PETSC_SUCCESS);
+  *anew = (PetscBool)(generation != body->generation);
+  if (!*anew) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(AbutBodyReset_Private(body));
   PetscCall(AbutGetProcessorTime(&begun));
   PetscCall(AbutMeshGetTopology(body->mesh, &t));
@@ -139,19 +130,81 @@ PetscErrorCode AbutBodySetUp(AbutBody body)
   PetscCall(AbutBodyCreateVec(body, &body->load));
   PetscCall(VecDuplicate(body->load, &body->lift));
   PetscCall(VecDuplicate(body->load, &body->contact));
-  PetscCall(VecDuplicate(body->load, &body->rhs));
+  PetscCall(AbutBodyCreateGroupVec_Private(body, &body->rhs));
   PetscCall(AbutBodyBoundarySetUp_Private(body));
   PetscCall(AbutBodyConditionsSetUp_Private(body));
   PetscCall(AbutBodyLoadsSetUp_Private(body));
+  PetscCall(AbutBodyModesCreate_Private(body));
+  PetscCall(AbutGetProcessorTime(&done));
+  body->setupcpu = done - begun;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What its group makes alone: operator and solver */
+static PetscErrorCode AbutBodyMakeOperator_Private(AbutBody body)
+{
+  PetscInt       n;
+  PetscLogDouble begun, done;
+
+  PetscFunctionBegin;
+  PetscCall(AbutGetProcessorTime(&begun));
   PetscCall(AbutBodyAssemble_Private(body));
   PetscCall(AbutBodyModesSetUp_Private(body));
-  PetscCall(AbutBodyChooseSolver_Private(body, 2 * t->nglobal, PETSC_FALSE));
+  PetscCall(AbutBodyGetSize(body, &n));
+  PetscCall(AbutBodyChooseSolver_Private(body, n, PETSC_FALSE));
   PetscCall(KSPSetOperators(body->ksp, body->A, body->P));
-  PetscCall(AbutBodyGiveFactorRoom_Private(body));
-  PetscCall(AbutBodyFactor_Private(body));
+  if (body->here) {
+    PetscCall(AbutBodyGiveFactorRoom_Private(body));
+    PetscCall(AbutBodyFactor_Private(body));
+  }
   PetscCall(AbutGetProcessorTime(&done));
-  body->setupcpu   = done - begun;
-  body->generation = generation;
+  body->setupcpu += done - begun;
+  PetscCall(AbutMeshGetGeneration(body->mesh, &body->generation));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+   AbutBodySetUpAll - Sets up several bodies, those on disjoint groups of ranks side by side
+
+   Collective
+
+   Input Parameters:
++  n      - how many
+-  bodies - [n] the bodies
+
+   Level: developer
+
+.seealso: `AbutBodySetUp()`, `AbutBodySetRanks()`
+@*/
+PetscErrorCode AbutBodySetUpAll(PetscInt n, AbutBody bodies[])
+{
+  PetscBool *anew;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(n, &anew));
+  for (PetscInt b = 0; b < n; ++b) PetscCall(AbutBodyDiscretize_Private(bodies[b], &anew[b]));
+  for (PetscInt b = 0; b < n; ++b)
+    if (anew[b]) PetscCall(AbutBodyMakeOperator_Private(bodies[b]));
+  PetscCall(PetscFree(anew));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutBodySetUp - Makes mesh, operator and vectors; after its mesh has adapted, makes them anew
+
+   Collective
+
+   Input Parameter:
+.  body - the body
+
+   Level: beginner
+
+.seealso: `AbutBodySetFromOptions()`, `AbutBodySetUpAll()`, `AbutBodySolve()`
+@*/
+PetscErrorCode AbutBodySetUp(AbutBody body)
+{
+  PetscFunctionBegin;
+  PetscCall(AbutBodySetUpAll(1, &body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -213,7 +266,7 @@ PetscErrorCode AbutBodyDestroy(AbutBody *body)
   for (PetscInt s = 0; s < ABUT_MAX_SIDES; ++s)
     for (PetscInt d = 0; d < 2; ++d) PetscCall(AbutExpressionDestroy(&(*body)->condition[s][d].value));
   PetscCall(AbutHooksDestroy_Private(&(*body)->hooks));
-  PetscCall(KSPDestroy(&(*body)->ksp));
+  PetscCall(AbutBodyLeaveGroup_Private(*body));
   PetscCall(AbutMeshDestroy(&(*body)->mesh));
   PetscCall(PetscHeaderDestroy(body));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -238,11 +291,14 @@ PetscErrorCode AbutBodyView(AbutBody body, PetscViewer viewer)
   PCType        pctype;
   PC            pc;
   MatSolverType solver = NULL;
+  PetscMPIInt   first, n;
 
   PetscFunctionBegin;
   PetscCall(PetscViewerASCIIPrintf(viewer, "body %s: Young's modulus %g, Poisson's ratio %g, %s\n", ((PetscObject)body)->name,
                                    (double)body->young, (double)body->poisson, AbutKinematicsNames[body->kinematics]));
   PetscCall(PetscViewerASCIIPushTab(viewer));
+  PetscCall(AbutMeshGetRanks(body->mesh, &first, &n));
+  if (body->split) PetscCall(PetscViewerASCIIPrintf(viewer, "on %d ranks from number %d\n", (int)n, (int)first));
   if (body->generation >= 0) {
     PetscCall(AbutMeshView(body->mesh, viewer));
     PetscCall(AbutBodyViewIntegration(body, viewer));

@@ -223,7 +223,7 @@ PetscErrorCode AbutBodyUngatherBoundary_Private(AbutBody body, const PetscReal *
 /* K u - f at the prescribed unknowns, zero elsewhere */
 PetscErrorCode AbutBodyCreateReaction_Private(AbutBody body, Vec *reaction)
 {
-  Vec                held;
+  Vec                held, u;
   const PetscScalar *h, *load, *contact;
   PetscScalar       *r;
   const PetscInt    *row;
@@ -232,7 +232,9 @@ PetscErrorCode AbutBodyCreateReaction_Private(AbutBody body, Vec *reaction)
   PetscFunctionBegin;
   PetscCall(VecDuplicate(body->load, reaction));
   PetscCall(VecDuplicate(body->prescribed, &held));
-  PetscCall(MatMult(body->Ac, body->u, held));
+  PetscCall(AbutBodyGetGroupVec_Private(body, body->u, &u));
+  PetscCall(MatMult(body->Ac, u, held));
+  PetscCall(AbutBodyRestoreGroupVec_Private(body, body->u, &u));
   PetscCall(VecGetOwnershipRange(*reaction, &first, NULL));
   PetscCall(ISGetLocalSize(body->constrained, &n));
   PetscCall(ISGetIndices(body->constrained, &row));

@@ -266,8 +266,8 @@ PetscErrorCode AbutBodyConditionsSetUp_Private(AbutBody body)
     value[n++] = of[k];
   }
   PetscCall(PetscSortIntWithScalarArray(n, row, value));
-  PetscCall(ISCreateGeneral(PetscObjectComm((PetscObject)body), n, row, PETSC_COPY_VALUES, &body->constrained));
-  PetscCall(VecCreateMPI(PetscObjectComm((PetscObject)body), n, PETSC_DETERMINE, &body->prescribed));
+  PetscCall(ISCreateGeneral(body->group, n, row, PETSC_COPY_VALUES, &body->constrained));
+  PetscCall(VecCreateMPI(body->group, n, PETSC_DETERMINE, &body->prescribed));
   PetscCall(VecGetArrayWrite(body->prescribed, &p));
   for (PetscInt i = 0; i < n; ++i) p[i] = body->factor * value[i];
   PetscCall(VecRestoreArrayWrite(body->prescribed, &p));

@@ -78,7 +78,7 @@ PetscErrorCode AbutBodyGetLinearCost(AbutBody body, PetscReal rtol, PetscReal *c
   PetscCall(AbutGetProcessorTime(&begun));
   PetscCall(AbutBodyRightHandSide_Private(body, body->rhs));
   PetscCall(MatNullSpaceRemove(body->free, body->rhs));
-  PetscCall(KSPSolve(body->ksp, body->rhs, x));
+  if (body->here) PetscCall(KSPSolve(body->ksp, body->rhs, x));
   PetscCall(AbutGetProcessorTime(&done));
   PetscCall(KSPSetInitialGuessNonzero(body->ksp, nonzero));
   PetscCall(KSPSetTolerances(body->ksp, own, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));

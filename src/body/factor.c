@@ -15,8 +15,12 @@ PetscErrorCode AbutBodyLoadsSetUp_Private(AbutBody body)
 /* What the prescribed displacements put on the right-hand side */
 PetscErrorCode AbutBodyLift_Private(AbutBody body)
 {
+  Vec lift;
+
   PetscFunctionBegin;
-  PetscCall(MatMultTranspose(body->Ac, body->prescribed, body->lift));
+  PetscCall(AbutBodyGetGroupVec_Private(body, body->lift, &lift));
+  PetscCall(MatMultTranspose(body->Ac, body->prescribed, lift));
+  PetscCall(AbutBodyRestoreGroupVec_Private(body, body->lift, &lift));
   PetscCall(VecScale(body->lift, -1.));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -35,8 +35,8 @@ static PetscErrorCode AbutBodyCreateSpringMat_Private(AbutBody body, const AbutM
     diagonal[own] = PetscMin(room, t->nowned);
     off[own]      = PetscMin(room, t->nglobal - t->nowned);
   }
-  PetscCall(MatCreate(PetscObjectComm((PetscObject)body), &body->S));
-  PetscCall(MatSetSizes(body->S, 2 * t->nowned, 2 * t->nowned, 2 * t->nglobal, 2 * t->nglobal));
+  PetscCall(MatCreate(body->group, &body->S));
+  PetscCall(MatSetSizes(body->S, 2 * t->nowned, 2 * t->nowned, PETSC_DETERMINE, PETSC_DETERMINE));
   PetscCall(MatSetBlockSize(body->S, 2));
   PetscCall(MatSetType(body->S, MATAIJ));
   PetscCall(MatXAIJSetPreallocation(body->S, 2, diagonal, off, NULL, NULL));
@@ -135,7 +135,7 @@ PetscErrorCode AbutBodyGetFoundationForce_Private(AbutBody body, PetscReal force
   force[0] = force[1] = *work = 0.;
   if (!body->S) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecDuplicate(body->load, &f));
-  PetscCall(MatMult(body->S, body->u, f));
+  PetscCall(AbutBodyMult_Private(body, body->S, body->u, f));
   PetscCall(VecScale(f, -1.));
   PetscCall(VecDot(f, body->u, work));
   for (PetscInt d = 0; d < 2; ++d) PetscCall(VecStrideSum(f, d, &force[d]));

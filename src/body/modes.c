@@ -155,18 +155,17 @@ PetscErrorCode AbutBodyGetFreeMotion(AbutBody body, PetscInt k, const PetscReal 
 }
 
 /* The unknowns of one motion on the present mesh */
-static PetscErrorCode AbutBodyCreateMotion_Private(AbutBody body, PetscInt kind, const PetscReal center[2], Vec *mode)
+static PetscErrorCode AbutBodySetMotion_Private(AbutBody body, PetscInt kind, const PetscReal center[2], Vec mode)
 {
   const AbutMeshTopology *t;
   PetscScalar            *a;
 
   PetscFunctionBegin;
   PetscCall(AbutMeshGetTopology(body->mesh, &t));
-  PetscCall(AbutBodyCreateVec(body, mode));
-  PetscCall(VecGetArrayWrite(*mode, &a));
+  PetscCall(VecGetArrayWrite(mode, &a));
   for (PetscInt k = 0; k < t->nnodes; ++k)
     if (t->unknown[k] >= 0 && t->unknown[k] < t->nowned) AbutMotionAt_Private(kind, center, t->x + 2 * k, a + 2 * t->unknown[k]);
-  PetscCall(VecRestoreArrayWrite(*mode, &a));
+  PetscCall(VecRestoreArrayWrite(mode, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -254,7 +253,10 @@ static PetscErrorCode AbutBodySetNearNullSpace_Private(AbutBody body, const Pets
   Vec          mode[3];
 
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < 3; ++k) PetscCall(AbutBodyCreateMotion_Private(body, k, center, &mode[k]));
+  for (PetscInt k = 0; k < 3; ++k) {
+    PetscCall(AbutBodyCreateGroupVec_Private(body, &mode[k]));
+    PetscCall(AbutBodySetMotion_Private(body, k, center, mode[k]));
+  }
   PetscCall(AbutOrthonormalize_Private(3, mode));
   PetscCall(MatNullSpaceCreate(PetscObjectComm((PetscObject)A), PETSC_FALSE, 3, mode, &near));
   PetscCall(MatSetNearNullSpace(A, near));
@@ -263,7 +265,41 @@ static PetscErrorCode AbutBodySetNearNullSpace_Private(AbutBody body, const Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The free modes of the present mesh, and with them the matrices of the solver: A, which knows its null space, and P, which has none */
+/* The free modes of the present mesh */
+PetscErrorCode AbutBodyModesCreate_Private(AbutBody body)
+{
+  AbutFreeMotions f;
+
+  PetscFunctionBegin;
+  PetscCall(AbutBodyFindFreeMotions_Private(body, &f));
+  for (PetscInt k = 0; k < f.n; ++k) {
+    PetscCall(AbutBodyCreateVec(body, &body->mode[k]));
+    PetscCall(AbutBodySetMotion_Private(body, f.kind[k], f.center, body->mode[k]));
+    PetscCall(VecISSet(body->mode[k], body->constrained, 0.));
+  }
+  body->nmodes = f.n;
+  PetscCall(AbutOrthonormalize_Private(f.n, body->mode));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* They as the null space of the matrices of the group, which outlive every other look at them */
+static PetscErrorCode AbutBodyCreateNullSpace_Private(AbutBody body, MatNullSpace *space)
+{
+  Vec mode[ABUT_MAX_MODES], group;
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < body->nmodes; ++k) {
+    PetscCall(AbutBodyGetGroupVec_Private(body, body->mode[k], &group));
+    PetscCall(VecDuplicate(group, &mode[k]));
+    PetscCall(VecCopy(group, mode[k]));
+    PetscCall(AbutBodyRestoreGroupVec_Private(body, body->mode[k], &group));
+  }
+  PetscCall(MatNullSpaceCreate(body->group, PETSC_FALSE, body->nmodes, mode, space));
+  for (PetscInt k = 0; k < body->nmodes; ++k) PetscCall(VecDestroy(&mode[k]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The matrices of the solver: A, which knows its null space, and P, which has none */
 PetscErrorCode AbutBodyModesSetUp_Private(AbutBody body)
 {
   AbutFreeMotions f;
@@ -271,17 +307,11 @@ PetscErrorCode AbutBodyModesSetUp_Private(AbutBody body)
 
   PetscFunctionBegin;
   PetscCall(AbutBodyFindFreeMotions_Private(body, &f));
-  for (PetscInt k = 0; k < f.n; ++k) {
-    PetscCall(AbutBodyCreateMotion_Private(body, f.kind[k], f.center, &body->mode[k]));
-    PetscCall(VecISSet(body->mode[k], body->constrained, 0.));
-  }
-  body->nmodes = f.n;
-  PetscCall(AbutOrthonormalize_Private(f.n, body->mode));
   if (f.n) {
     PetscCall(AbutLogEventGet("AbutFreeModes", ABUTBODY_CLASSID, &event));
     PetscCall(PetscLogEventBegin(event, body, 0, 0, 0));
     PetscCall(AbutBodySupport_Private(body, &f));
-    PetscCall(MatNullSpaceCreate(PetscObjectComm((PetscObject)body), PETSC_FALSE, f.n, body->mode, &body->free));
+    PetscCall(AbutBodyCreateNullSpace_Private(body, &body->free));
     PetscCall(MatSetNullSpace(body->A, body->free));
     PetscCall(MatSetOption(body->A, MAT_SYMMETRIC, PETSC_TRUE));
     PetscCall(PetscLogEventEnd(event, body, 0, 0, 0));

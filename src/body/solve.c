@@ -34,21 +34,24 @@ PetscErrorCode AbutBodySpread_Private(AbutBody body)
 /* What the present forces and prescribed displacements make of the right-hand side of A: mu times the value in a prescribed row */
 PetscErrorCode AbutBodyRightHandSide_Private(AbutBody body, Vec b)
 {
+  const Vec          part[3] = {body->load, body->contact, body->lift};
   const PetscInt    *row;
-  const PetscScalar *g;
+  const PetscScalar *g, *of[3];
   PetscScalar       *a;
-  PetscInt           n, first;
+  PetscInt           n, size, first;
 
   PetscFunctionBegin;
-  PetscCall(VecWAXPY(b, 1., body->load, body->contact));
-  PetscCall(VecAXPY(b, 1., body->lift));
+  PetscCall(VecGetLocalSize(b, &size));
   PetscCall(VecGetOwnershipRange(b, &first, NULL));
   PetscCall(ISGetLocalSize(body->constrained, &n));
   PetscCall(ISGetIndices(body->constrained, &row));
   PetscCall(VecGetArrayRead(body->prescribed, &g));
-  PetscCall(VecGetArray(b, &a));
+  for (PetscInt k = 0; k < 3; ++k) PetscCall(VecGetArrayRead(part[k], &of[k]));
+  PetscCall(VecGetArrayWrite(b, &a));
+  for (PetscInt i = 0; i < size; ++i) a[i] = of[0][i] + of[1][i] + of[2][i];
   for (PetscInt i = 0; i < n; ++i) a[row[i] - first] = body->mu * g[i];
-  PetscCall(VecRestoreArray(b, &a));
+  PetscCall(VecRestoreArrayWrite(b, &a));
+  for (PetscInt k = 0; k < 3; ++k) PetscCall(VecRestoreArrayRead(part[k], &of[k]));
   PetscCall(VecRestoreArrayRead(body->prescribed, &g));
   PetscCall(ISRestoreIndices(body->constrained, &row));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -66,12 +69,16 @@ static PetscErrorCode AbutBodyCleanRightHandSide_Private(AbutBody body, PetscRea
 
 /* A x = rhs, a clean one; the solution without a part along the free modes, which is not determined: the null space of A keeps the
    directions of a Krylov method clean, but not its start. */
-static PetscErrorCode AbutBodySolveLinear_Private(AbutBody body, Vec x)
+static PetscErrorCode AbutBodySolveLinear_Private(AbutBody body, Vec u)
 {
+  Vec       x;
   PetscInt  its;
   PetscReal size;
 
   PetscFunctionBegin;
+  if (!body->here) PetscFunctionReturn(PETSC_SUCCESS);
+  ++body->solves;
+  PetscCall(AbutBodyGetGroupVec_Private(body, u, &x));
   PetscCall(KSPSolve(body->ksp, body->rhs, x));
   PetscCall(MatNullSpaceRemove(body->free, x));
   PetscCall(VecNorm(x, NORM_INFINITY, &size));
@@ -79,8 +86,8 @@ static PetscErrorCode AbutBodySolveLinear_Private(AbutBody body, Vec x)
     body->ksp->reason = KSP_DIVERGED_NANORINF;
     PetscCall(VecZeroEntries(x));
   }
+  PetscCall(AbutBodyRestoreGroupVec_Private(body, u, &x));
   PetscCall(KSPGetIterationNumber(body->ksp, &its));
-  ++body->solves;
   body->iterations += its;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -97,7 +104,7 @@ static PetscErrorCode AbutBodySolveLinear_Private(AbutBody body, Vec x)
    Level: beginner
 
    Notes:
-   Whether the linear solver converged is asked of its `KSP`, see `AbutBodyGetKSP()`. An iterative one begins with the present displacement.
+   Whether the linear solver converged says `AbutBodyGetSolved()`. An iterative one begins with the present displacement.
 
    With free modes, what the forces have along them is left out (see `AbutBodyGetImbalance()`), and the displacement has no part along them.
 
@@ -133,8 +140,8 @@ PetscErrorCode AbutBodySolve(AbutBody body, Vec contact)
    Level: intermediate
 
    Notes:
-   Counts as a solve, except for contact forces that are all zero, which cost nothing. Whether the linear solver converged is asked of its
-   `KSP`; after a failure w may be zero.
+   Counts as a solve, except for contact forces that are all zero, which cost nothing. Whether the linear solver converged says
+   `AbutBodyGetSolved()`; after a failure w may be zero.
 
    An iterative solver need not leave less than it left in `AbutBodySolve()`: its relative tolerance is half of that one's, in
    proportion to the sizes of the right-hand sides, up to a ten thousandth, with which the loops still take no more sweeps than with
@@ -146,13 +153,16 @@ PetscErrorCode AbutBodySolve(AbutBody body, Vec contact)
 @*/
 PetscErrorCode AbutBodySolveIncrement(AbutBody body, Vec contact, Vec w)
 {
+  Vec       force;
   PetscReal size, rtol;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, ABUTBODY_CLASSID, 1);
   PetscCall(AbutBodyNeedSetUp_Private(body));
   PetscCall(PetscLogEventBegin(ABUTBODY_Solve, body, 0, 0, 0));
-  PetscCall(VecCopy(contact, body->rhs));
+  PetscCall(AbutBodyGetGroupVec_Private(body, contact, &force));
+  PetscCall(VecCopy(force, body->rhs));
+  PetscCall(AbutBodyRestoreGroupVec_Private(body, contact, &force));
   PetscCall(VecISSet(body->rhs, body->constrained, 0.));
   PetscCall(VecZeroEntries(w));
   PetscCall(AbutBodyCleanRightHandSide_Private(body, &size));
@@ -249,7 +259,7 @@ PetscErrorCode AbutBodyGetNodeDisplacement(AbutBody body, const PetscReal *u[])
 
    Output Parameters:
 +  solves     - since the body was created
--  iterations - of its `KSP`, all solves together
+-  iterations - of its `KSP`, all solves together; of both those before the last `AbutBodyGetSolved()` at least
 
    Level: intermediate
 
@@ -263,16 +273,20 @@ PetscErrorCode AbutBodyGetSolveCounts(AbutBody body, PetscInt *solves, PetscInt 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* b - A u of the present state and the size of b, both without what the free modes leave without an answer */
+/* b - A u of the present state and the size of b, both without what the free modes leave without an answer, for the group */
 static PetscErrorCode AbutBodyCreateResidual_Private(AbutBody body, Vec *r, PetscReal *b)
 {
+  Vec u;
+
   PetscFunctionBegin;
   PetscCall(AbutBodyNeedSetUp_Private(body));
   PetscCall(VecDuplicate(body->rhs, r));
   PetscCall(AbutBodyRightHandSide_Private(body, body->rhs));
   PetscCall(MatNullSpaceRemove(body->free, body->rhs));
   PetscCall(VecNorm(body->rhs, NORM_2, b));
-  PetscCall(MatMult(body->A, body->u, *r));
+  PetscCall(AbutBodyGetGroupVec_Private(body, body->u, &u));
+  PetscCall(MatMult(body->A, u, *r));
+  PetscCall(AbutBodyRestoreGroupVec_Private(body, body->u, &u));
   PetscCall(VecAYPX(*r, -1., body->rhs));
   PetscCall(MatNullSpaceRemove(body->free, *r));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -333,6 +347,7 @@ PetscErrorCode AbutBodyGetLinearResidual(AbutBody body, PetscReal *residual)
   PetscCall(VecNorm(r, NORM_2, &e));
   PetscCall(VecDestroy(&r));
   *residual = b > 0. ? e / b : e;
+  PetscCall(AbutBodyShare_Private(body, 1, residual));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -364,12 +379,15 @@ PetscErrorCode AbutBodyGetLinearError(AbutBody body, PetscReal *energy)
   PetscFunctionBegin;
   PetscCall(AbutBodyCreateResidual_Private(body, &r, &b));
   PetscCall(VecDuplicate(r, &z));
-  PetscCall(KSPSetUp(body->ksp));
-  PetscCall(KSPGetPC(body->ksp, &pc));
-  PetscCall(PCApply(pc, r, z));
+  if (body->here) {
+    PetscCall(KSPSetUp(body->ksp));
+    PetscCall(KSPGetPC(body->ksp, &pc));
+    PetscCall(PCApply(pc, r, z));
+  }
   PetscCall(VecDot(r, z, &dot));
   PetscCall(VecDestroy(&r));
   PetscCall(VecDestroy(&z));
   *energy = PetscSqrtReal(PetscMax(dot, 0.)); /* round-off of a residual that is nothing else */
+  PetscCall(AbutBodyShare_Private(body, 1, energy));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

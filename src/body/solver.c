@@ -35,7 +35,7 @@ static PetscErrorCode AbutBodySetIterative_Private(AbutBody body)
 PetscErrorCode AbutBodyCreateSolver_Private(AbutBody body)
 {
   PetscFunctionBegin;
-  PetscCall(KSPCreate(PetscObjectComm((PetscObject)body), &body->ksp));
+  PetscCall(KSPCreate(body->group, &body->ksp));
   PetscCall(KSPSetOptionsPrefix(body->ksp, ((PetscObject)body)->prefix));
   PetscCall(AbutBodySetDirect_Private(body));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -134,8 +134,8 @@ static PetscErrorCode AbutBodyPreallocate_Private(AbutBody body, const AbutMeshT
   }
   PetscCall(VecRestoreArray(count, &a));
   PetscCall(VecDestroy(&count));
-  PetscCall(MatCreate(PetscObjectComm((PetscObject)body), &body->A));
-  PetscCall(MatSetSizes(body->A, 2 * t->nowned, 2 * t->nowned, 2 * t->nglobal, 2 * t->nglobal));
+  PetscCall(MatCreate(body->group, &body->A));
+  PetscCall(MatSetSizes(body->A, 2 * t->nowned, 2 * t->nowned, PETSC_DETERMINE, PETSC_DETERMINE));
   PetscCall(MatSetBlockSize(body->A, 2));
   PetscCall(MatSetType(body->A, MATAIJ));
   PetscCall(MatXAIJSetPreallocation(body->A, 2, diagonal, off, NULL, NULL));
@@ -185,7 +185,7 @@ PetscErrorCode AbutBodyAssemble_Private(AbutBody body)
   PetscCall(AbutBodyPreallocate_Private(body, t));
   PetscCall(AbutBodyValues_Private(body, t));
   PetscCall(AbutBodyAssembleFoundation_Private(body));
-  PetscCall(ISCreateStride(PetscObjectComm((PetscObject)body), 2 * t->nowned, 2 * t->firstowned, 1, &columns));
+  PetscCall(ISCreateStride(body->group, 2 * t->nowned, 2 * t->firstowned, 1, &columns));
   PetscCall(MatCreateSubMatrix(body->A, body->constrained, columns, MAT_INITIAL_MATRIX, &body->Ac));
   PetscCall(ISDestroy(&columns));
   PetscCall(AbutBodyLift_Private(body));

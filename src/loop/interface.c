@@ -118,7 +118,7 @@ PetscErrorCode AbutInterfaceSetUp(AbutInterface iface)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(iface, ABUTINTERFACE_CLASSID, 1);
   if (iface->setupcalled) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt b = 0; b < iface->nbodies; ++b) PetscCall(AbutBodySetUp(iface->body[b]));
+  PetscCall(AbutBodySetUpAll(iface->nbodies, iface->body));
   PetscCall(PetscCalloc1(2 * iface->npairs + 1, &iface->offset));
   for (PetscInt i = 0; i < iface->npairs; ++i) {
     PetscInt n[2], m;

@@ -41,16 +41,16 @@ PetscErrorCode AbutInterfaceTraces_Private(AbutInterface f, const Vec u[], Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Has the body's last linear solve failed? */
-PetscErrorCode AbutInterfaceCheckSolve_Private(AbutInterface f, AbutBody body)
+/* Has the last linear solve of a body failed? Asked when all bodies are solved: it is where ranks wait for each other. */
+static PetscErrorCode AbutInterfaceCheckSolves_Private(AbutInterface f)
 {
-  KSP                ksp;
-  KSPConvergedReason reason;
+  PetscBool solved;
 
   PetscFunctionBegin;
-  PetscCall(AbutBodyGetKSP(body, &ksp));
-  PetscCall(KSPGetConvergedReason(ksp, &reason));
-  if (reason < 0) f->linearfailed = PETSC_TRUE;
+  for (PetscInt b = 0; b < f->nbodies; ++b) {
+    PetscCall(AbutBodyGetSolved(f->body[b], &solved));
+    if (!solved) f->linearfailed = PETSC_TRUE;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -59,10 +59,8 @@ PetscErrorCode AbutInterfaceSolveBodies_Private(AbutInterface f)
 {
   PetscFunctionBegin;
   PetscCall(AbutInterfaceForces_Private(f, f->p, f->force));
-  for (PetscInt b = 0; b < f->nbodies; ++b) {
-    PetscCall(AbutBodySolve(f->body[b], f->force[b]));
-    PetscCall(AbutInterfaceCheckSolve_Private(f, f->body[b]));
-  }
+  for (PetscInt b = 0; b < f->nbodies; ++b) PetscCall(AbutBodySolve(f->body[b], f->force[b]));
+  PetscCall(AbutInterfaceCheckSolves_Private(f));
   PetscCall(AbutInterfaceTraces_Private(f, f->u, f->g));
   f->acts = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -75,10 +73,8 @@ PetscErrorCode AbutInterfaceIncrement_Private(AbutInterface f, PetscReal *const 
   PetscFunctionBegin;
   PetscCall(PetscLogEventBegin(ABUTINTERFACE_Sweep, f, 0, 0, 0));
   PetscCall(AbutInterfaceForces_Private(f, p, force));
-  for (PetscInt b = 0; b < f->nbodies; ++b) {
-    PetscCall(AbutBodySolveIncrement(f->body[b], force[b], w[b]));
-    PetscCall(AbutInterfaceCheckSolve_Private(f, f->body[b]));
-  }
+  for (PetscInt b = 0; b < f->nbodies; ++b) PetscCall(AbutBodySolveIncrement(f->body[b], force[b], w[b]));
+  PetscCall(AbutInterfaceCheckSolves_Private(f));
   PetscCall(AbutInterfaceTraces_Private(f, w, trace));
   PetscCall(PetscLogEventEnd(ABUTINTERFACE_Sweep, f, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,5 +1,6 @@
 #include "first.h"
 #include "quadrants.h" /*I "abutmesh.h" I*/
+#include <p4est_algorithms.h>
 #include <p4est_bits.h>
 #include <p4est_extended.h>
 #include <p4est_plex.h>
@@ -216,6 +217,32 @@ static PetscErrorCode AbutForestGrid_Private(AbutMesh mesh, p4est_connectivity_t
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Equal shares of the quadrants for the ranks that have them */
+static PetscErrorCode AbutForestPartition_Private(AbutMesh mesh, p4est_t *p4est)
+{
+  p4est_locidx_t *count;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(p4est->mpisize, &count));
+  for (PetscMPIInt r = 0; r < p4est->mpisize; ++r)
+    count[r] = (p4est_locidx_t)(AbutMeshShare_Private(mesh, p4est->mpisize, p4est->global_num_quadrants, r + 1) -
+                                AbutMeshShare_Private(mesh, p4est->mpisize, p4est->global_num_quadrants, r));
+  (void)p4est_partition_given(p4est, count);
+  PetscCall(PetscFree(count));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AbutMeshDistribute_Forest(AbutMesh mesh, DM *dm)
+{
+  p4est_t *p4est = ((AbutMesh_Forest *)mesh->data)->p4est;
+
+  PetscFunctionBegin;
+  PetscCall(AbutForestPartition_Private(mesh, p4est));
+  PetscCall(DMDestroy(dm));
+  PetscCall(AbutForestToPlex_Private(mesh, p4est, dm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode AbutMeshCreate_Forest_DM(AbutMesh mesh, DM *dm)
 {
   AbutMesh_Forest *forest = (AbutMesh_Forest *)mesh->data;
@@ -224,6 +251,7 @@ static PetscErrorCode AbutMeshCreate_Forest_DM(AbutMesh mesh, DM *dm)
   if (mesh->first) PetscCall(AbutTreesCreate_Private(mesh, &forest->connectivity));
   else PetscCall(AbutForestGrid_Private(mesh, &forest->connectivity));
   forest->p4est = p4est_new(PetscObjectComm((PetscObject)mesh), forest->connectivity, sizeof(AbutQuad), AbutForestBegin_Private, NULL);
+  PetscCall(AbutForestPartition_Private(mesh, forest->p4est));
   PetscCall(AbutForestToPlex_Private(mesh, forest->p4est, dm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -293,7 +321,7 @@ static PetscErrorCode AbutMeshRefine_Forest(AbutMesh mesh, const PetscBool marks
   p4est_refine_ext(p4est, 0, -1, AbutForestIsMarked_Private, AbutForestBegin_Private, AbutForestReplace_Private);
   /* across sides only: the paper's extra rule */
   if (mesh->balance) p4est_balance_ext(p4est, P4EST_CONNECT_FACE, AbutForestBegin_Private, AbutForestReplace_Private);
-  p4est_partition(p4est, 0, NULL);
+  PetscCall(AbutForestPartition_Private(mesh, p4est));
   if (merged != before || p4est->global_num_quadrants != merged) PetscCall(AbutForestToPlex_Private(mesh, p4est, dm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -321,12 +349,13 @@ PetscErrorCode AbutMeshCreate_Forest(AbutMesh mesh)
     p4est_init(NULL, SC_LP_ERROR);
   }
   PetscCall(PetscNew(&forest));
-  mesh->data           = forest;
-  mesh->ops->create    = AbutMeshCreate_Forest_DM;
-  mesh->ops->keepfirst = AbutMeshKeepFirst_Forest;
-  mesh->ops->refine    = AbutMeshRefine_Forest;
-  mesh->ops->getlevels = AbutMeshGetLevels_Forest;
-  mesh->ops->getsides  = AbutMeshGetSides_Forest;
-  mesh->ops->destroy   = AbutMeshDestroy_Forest;
+  mesh->data            = forest;
+  mesh->ops->create     = AbutMeshCreate_Forest_DM;
+  mesh->ops->keepfirst  = AbutMeshKeepFirst_Forest;
+  mesh->ops->refine     = AbutMeshRefine_Forest;
+  mesh->ops->distribute = AbutMeshDistribute_Forest;
+  mesh->ops->getlevels  = AbutMeshGetLevels_Forest;
+  mesh->ops->getsides   = AbutMeshGetSides_Forest;
+  mesh->ops->destroy    = AbutMeshDestroy_Forest;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

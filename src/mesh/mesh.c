@@ -147,7 +147,7 @@ PetscErrorCode AbutMeshGetOrder(AbutMesh mesh, PetscInt *order)
 }
 
 /* Takes over a new DM, and makes what is derived from it */
-static PetscErrorCode AbutMeshSetDM_Private(AbutMesh mesh, DM dm)
+PetscErrorCode AbutMeshSetDM_Private(AbutMesh mesh, DM dm)
 {
   PetscFunctionBegin;
   PetscCall(AbutMeshTopologyReset_Private(mesh));

@@ -34,8 +34,9 @@ static PetscInt AbutTrianglesBelow_Private(PetscInt n, const PetscReal at[], Pet
 
 /* Cuts the curve into pieces of equally many cells, whose bounds are found by bisection, all at once: count[r] of the n local cells, which
    ascend along the curve, go to rank r */
-static PetscErrorCode AbutTrianglesCut_Private(MPI_Comm comm, PetscInt n, const PetscReal at[], PetscInt count[])
+static PetscErrorCode AbutTrianglesCut_Private(AbutMesh mesh, PetscInt n, const PetscReal at[], PetscInt count[])
 {
+  MPI_Comm    comm = PetscObjectComm((PetscObject)mesh);
   PetscMPIInt size;
   PetscInt    ncells, *below, *sum;
   PetscReal  *low, *high;
@@ -52,7 +53,7 @@ static PetscErrorCode AbutTrianglesCut_Private(MPI_Comm comm, PetscInt n, const 
       const PetscReal middle = PetscFloorReal(0.5 * (low[r] + high[r]));
 
       if (low[r] >= high[r]) continue;
-      if (sum[r] >= (PetscReal)ncells * (r + 1) / size) high[r] = middle; /* rank r has the cells below its bound */
+      if (sum[r] >= AbutMeshShare_Private(mesh, size, ncells, r + 1)) high[r] = middle; /* rank r has the cells below its bound */
       else low[r] = middle + 1.;
     }
   }
@@ -63,7 +64,7 @@ static PetscErrorCode AbutTrianglesCut_Private(MPI_Comm comm, PetscInt n, const 
 }
 
 /* Graph partitioners draw lots: two runs would not agree to the last bit. The curve does not depend on where the cells were before. */
-static PetscErrorCode AbutTrianglesDistribute_Private(AbutMesh mesh, DM *dm)
+static PetscErrorCode AbutMeshDistribute_Triangles(AbutMesh mesh, DM *dm)
 {
   MPI_Comm         comm = PetscObjectComm((PetscObject)mesh);
   DM               distributed;
@@ -85,7 +86,7 @@ static PetscErrorCode AbutTrianglesDistribute_Private(AbutMesh mesh, DM *dm)
     cell[c - cStart] = c - cStart;
   }
   PetscCall(PetscSortRealWithArrayInt(cEnd - cStart, at, cell));
-  PetscCall(AbutTrianglesCut_Private(comm, cEnd - cStart, at, count));
+  PetscCall(AbutTrianglesCut_Private(mesh, cEnd - cStart, at, count));
   PetscCall(PetscPartitionerCreate(comm, &part));
   PetscCall(PetscPartitionerSetType(part, PETSCPARTITIONERSHELL));
   PetscCall(PetscPartitionerShellSetPartition(part, size, count, cell));
@@ -142,7 +143,7 @@ static PetscErrorCode AbutMeshCreate_Triangles_DM(AbutMesh mesh, DM *dm)
   PetscCall(PetscFree(cell));
   PetscCall(PetscFree(xy));
   if (mesh->first) PetscCall(AbutBisectionsBegin_Private(mesh, *dm));
-  PetscCall(AbutTrianglesDistribute_Private(mesh, dm));
+  PetscCall(AbutMeshDistribute_Triangles(mesh, dm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -181,7 +182,7 @@ static PetscErrorCode AbutMeshRefine_Triangles(AbutMesh mesh, const PetscBool ma
   if (any) PetscCall(AbutTrianglesSplit_Private(mesh, mesh->dm, active, dm));
   PetscCall(DMLabelDestroy(&active));
   if (mesh->coarsen) PetscCall(AbutTrianglesMerge_Private(mesh, marks, dm));
-  if (*dm != mesh->dm) PetscCall(AbutTrianglesDistribute_Private(mesh, dm));
+  if (*dm != mesh->dm) PetscCall(AbutMeshDistribute_Triangles(mesh, dm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -229,12 +230,13 @@ PetscErrorCode AbutMeshCreate_Triangles(AbutMesh mesh)
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&triangles));
-  mesh->data           = triangles;
-  mesh->ops->create    = AbutMeshCreate_Triangles_DM;
-  mesh->ops->keepfirst = AbutMeshKeepFirst_Triangles;
-  mesh->ops->refine    = AbutMeshRefine_Triangles;
-  mesh->ops->getlevels = AbutMeshGetLevels_Triangles;
-  mesh->ops->getsides  = AbutMeshGetSides_Triangles;
-  mesh->ops->destroy   = AbutMeshDestroy_Triangles;
+  mesh->data            = triangles;
+  mesh->ops->create     = AbutMeshCreate_Triangles_DM;
+  mesh->ops->keepfirst  = AbutMeshKeepFirst_Triangles;
+  mesh->ops->refine     = AbutMeshRefine_Triangles;
+  mesh->ops->distribute = AbutMeshDistribute_Triangles;
+  mesh->ops->getlevels  = AbutMeshGetLevels_Triangles;
+  mesh->ops->getsides   = AbutMeshGetSides_Triangles;
+  mesh->ops->destroy    = AbutMeshDestroy_Triangles;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -276,6 +276,8 @@ static PetscErrorCode AbutSceneCheckContactKeys_Private(AbutScene scene)
 .  -scene_cold              - with an adaptor: every mesh begins without the traces and forces of the last one
 .  -scene_eps_u <0.0015>   - with it: the relative change of the traces at which the run ends
 .  -scene_load_steps <f1,f2,...> - factors of all that is prescribed, one load step for each, see `AbutSceneSolve()`
+.  -scene_split            - every body on ranks of its own, as many as it has unknowns, or every rank with bodies of its own, and not every
+                              body on all ranks; does nothing on one
 .  -scene_tol T            - relative error in the energy norm to be reached: chooses theta, tolerances and refinement, see below
 .  -adaptor_type, -estimator_type, -snes_* - what adapts, estimates, iterates; see `AbutAdaptorCreate()`, `AbutEstimatorCreate()`,
                                              `SNESDDNEUMANN`
@@ -310,6 +312,7 @@ PetscErrorCode AbutSceneSetFromOptions(AbutScene scene)
   PetscCall(AbutOptionsBool(PetscOptionsObject, "-record_time_ratio", "Processor time in linear problems on the last mesh",
                             &scene->wantsratio, NULL));
   PetscCall(AbutSceneStepsFromOptions_Private(scene, PetscOptionsObject));
+  PetscCall(AbutSceneSplitFromOptions_Private(scene, PetscOptionsObject));
   PetscCall(PetscOptionsString("-adaptor_type", "Type of the adaptor", NULL, type, type, sizeof(type), &adapts));
   PetscCall(PetscOptionsString("-estimator_type", "Type of the estimator", NULL, type, type, sizeof(type), &estimates));
   PetscOptionsEnd();

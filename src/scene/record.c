@@ -59,6 +59,7 @@ static PetscErrorCode AbutSceneRecordBodies_Private(AbutScene scene)
     AbutMesh         mesh;
     AbutMeshMeasures m;
     PetscInt         n, cells, solves, its;
+    PetscMPIInt      first, nranks;
     const char      *integration;
     char             key[256];
     PetscReal        energy, work, reaction[2], applied[2], residual, uniform = 0., force = 0., floor = 0.;
@@ -84,6 +85,8 @@ static PetscErrorCode AbutSceneRecordBodies_Private(AbutScene scene)
     PetscCall(AbutSceneSetReal_Private(scene, "body", name, "h_ratio", m.ratio));
     PetscCall(AbutSceneSetReal_Private(scene, "body", name, "lemma", m.lemma));
     if (uniform > 0.) PetscCall(AbutSceneSetReal_Private(scene, "body", name, "unknowns_uniform", uniform));
+    PetscCall(AbutMeshGetRanks(mesh, &first, &nranks));
+    if (scene->split) PetscCall(AbutSceneSetReal_Private(scene, "body", name, "ranks", nranks));
     PetscCall(AbutBodyGetIntegration(scene->body[b], &integration, NULL));
     PetscCall(PetscSNPrintf(key, sizeof(key), "body.%s.integration", name));
     PetscCall(AbutRecorderSetString(rec, key, integration));

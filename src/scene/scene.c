@@ -63,8 +63,10 @@ PetscErrorCode AbutSceneSetUp(AbutScene scene)
     if (scene->estimates[i]) PetscCall(AbutEstimatorCheck(scene->estimator, scene->body[i]));
   PetscCall(AbutInterfaceCheck(scene->iface));
   PetscCall(AbutSceneCheckLoop_Private(scene));
+  PetscCall(AbutSceneSplit_Private(scene, PETSC_TRUE));
   PetscCall(AbutSceneRestart_Private(scene));
   PetscCall(AbutSceneSetLoadFactor_Private(scene));
+  PetscCall(AbutSceneSplit_Private(scene, PETSC_FALSE));
   PetscCall(AbutInterfaceSetUp(scene->iface));
   PetscCall(AbutSceneSetLinearTolerance_Private(scene));
   PetscCall(AbutSceneWarnOfOverlap_Private(scene));

@@ -154,6 +154,7 @@ static PetscErrorCode AbutSceneAdapt_Private(AbutScene scene, PetscBool *const m
     PetscCall(VecDestroy(&scene->eta[b]));
   }
   PetscCall(AbutInterfaceReset(scene->iface));
+  PetscCall(AbutSceneSplit_Private(scene, PETSC_FALSE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -119,6 +119,7 @@ ROWS = [
     output("profile", "-output_profile p.csv", "AbutWriteProfile", ["p.csv"]),
     output("checkpoint", "-checkpoint c", "AbutCheckpoint", ["c"]),
     Row("restart", ADAPTED, "-restart before", {"AbutRestart"}, leaves="record"),
+    Row("bodies on ranks of their own", BLOCKS, "-scene_split", (), leaves="all"),  # on one rank nothing
     Row("time ratio", BLOCKS, "-record_time_ratio", {"AbutTimeRatio"}, leaves="record"),
 ]
 TIMES = re.compile("^(time|memory)[.]")

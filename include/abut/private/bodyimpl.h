@@ -64,6 +64,9 @@ struct _p_AbutBody {
   PetscLogEvent      assembly;       /* the event: another one with the mean dilatation */
   AbutHook           hooks;          /* in the order they came; NULL: none */
   PetscBool          initial;        /* initial strains are among them */
+  MPI_Comm           group;          /* the ranks that have the body, or the others, see group.c; that of the body if all have it */
+  PetscMPIInt        leader;         /* the first that has it */
+  PetscBool          here, split;    /* this rank has it; others have not */
 
   /* of the present mesh */
   AbutElement   element;       /* what all cells share */
@@ -78,7 +81,7 @@ struct _p_AbutBody {
   Vec           initialload;   /* those of the initial strains alone, NULL if there are none, ... */
   PetscReal     initialenergy; /* ... and twice the energy if nothing moved */
   Vec           contact;       /* nodal contact forces that act */
-  Vec           rhs, u;        /* of the last linear solve; u has ghost values */
+  Vec           rhs, u;        /* of the last linear solve, the first in the group; u has ghost values */
   PetscInt      nmodes;        /* rigid motions that no prescribed displacement resists */
   Vec           mode[ABUT_MAX_MODES];
   MatNullSpace  free;   /* the modes, NULL if there are none */
@@ -123,6 +126,7 @@ PETSC_INTERN PetscErrorCode    AbutBodyChooseSolver_Private(AbutBody, PetscInt, 
 PETSC_INTERN PetscErrorCode    AbutBodyGiveFactorRoom_Private(AbutBody);
 PETSC_INTERN PetscErrorCode    AbutBodyReset_Private(AbutBody);
 PETSC_INTERN PetscErrorCode    AbutBodyNeedSetUp_Private(AbutBody);
+PETSC_INTERN PetscErrorCode    AbutBodyModesCreate_Private(AbutBody);
 PETSC_INTERN PetscErrorCode    AbutBodyModesSetUp_Private(AbutBody);
 PETSC_INTERN PetscErrorCode    AbutBodyModesReset_Private(AbutBody);
 PETSC_INTERN PetscErrorCode    AbutBodyFactor_Private(AbutBody);
@@ -134,6 +138,13 @@ PETSC_INTERN PetscErrorCode    AbutBodyGatherBoundary_Private(AbutBody, Vec, con
 PETSC_INTERN PetscErrorCode    AbutBodyCreateReaction_Private(AbutBody, Vec *);
 PETSC_INTERN PetscErrorCode    AbutBodyUngatherBoundary_Private(AbutBody, const PetscReal *[]);
 PETSC_INTERN PetscErrorCode    AbutHooksDestroy_Private(AbutHook *);
+/* group.c */
+PETSC_INTERN PetscErrorCode AbutBodyLeaveGroup_Private(AbutBody);
+PETSC_INTERN PetscErrorCode AbutBodyCreateGroupVec_Private(AbutBody, Vec *);
+PETSC_INTERN PetscErrorCode AbutBodyGetGroupVec_Private(AbutBody, Vec, Vec *);
+PETSC_INTERN PetscErrorCode AbutBodyRestoreGroupVec_Private(AbutBody, Vec, Vec *);
+PETSC_INTERN PetscErrorCode AbutBodyMult_Private(AbutBody, Mat, Vec, Vec);
+PETSC_INTERN PetscErrorCode AbutBodyShare_Private(AbutBody, PetscMPIInt, PetscReal[]);
 /* forces.c */
 PETSC_INTERN PetscErrorCode AbutBodyHookForces_Private(AbutBody);
 PETSC_INTERN PetscBool      AbutBodyHasTraction_Private(AbutBody, PetscInt, PetscInt);

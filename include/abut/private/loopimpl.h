@@ -102,7 +102,6 @@ PETSC_INTERN PetscErrorCode AbutInterfaceForces_Private(AbutInterface, PetscReal
 PETSC_INTERN PetscErrorCode AbutInterfaceTraces_Private(AbutInterface, const Vec[], PetscReal[]);
 PETSC_INTERN PetscErrorCode AbutInterfaceSolveBodies_Private(AbutInterface);
 PETSC_INTERN PetscErrorCode AbutInterfaceIncrement_Private(AbutInterface, PetscReal *const[], Vec[], Vec[], PetscReal[]);
-PETSC_INTERN PetscErrorCode AbutInterfaceCheckSolve_Private(AbutInterface, AbutBody);
 
 PETSC_INTERN PetscErrorCode AbutInterfaceSetFloating_Private(AbutInterface, PetscInt, PetscInt);
 PETSC_INTERN PetscErrorCode AbutInterfaceTransferPressure_Private(AbutInterface);

@@ -11,6 +11,7 @@ struct _AbutMeshOps {
   /* required: the mesh with the marked cells (and what must follow) split, and others merged; a rank may have no marks. The DM is the
      present one on entry, and stays it if nothing changes. */
   PetscErrorCode (*refine)(AbutMesh, const PetscBool[], DM *);
+  PetscErrorCode (*distribute)(AbutMesh, DM *);      /* required: the present mesh, in the DM on entry, to the ranks that are to have it */
   PetscErrorCode (*getlevels)(AbutMesh, PetscInt[]); /* required: level of each local cell of the current DM */
   /* required for a mesh from a file: [corners*ncells] side of the body on which each side of a local cell lies, -1 for none */
   PetscErrorCode (*getsides)(AbutMesh, PetscInt[]);
@@ -48,6 +49,7 @@ struct _p_AbutMesh {
   PetscBool        shapeset, setupcalled; /* by a box or a file */
   PetscBool        balance;               /* at most one level between quads with a common side */
   AbutExpression   size;                  /* wanted length of the cells of the first mesh, NULL: as they are */
+  PetscMPIInt      firstrank, nranks;     /* that have the cells; 0 for all, see partition.c */
   DM               dm;
   PetscInt         generation; /* counts the meshes: 0 is the first */
   AbutBasis        basis;
@@ -77,6 +79,8 @@ static inline PetscReal AbutMeshGridLine_Private(AbutMesh mesh, PetscInt d, Pets
   return mesh->lower[d] * (1. - s) + mesh->upper[d] * s;
 }
 
+PETSC_INTERN PetscInt64     AbutMeshShare_Private(AbutMesh, PetscMPIInt, PetscInt64, PetscMPIInt);
+PETSC_INTERN PetscErrorCode AbutMeshSetDM_Private(AbutMesh, DM);
 PETSC_INTERN PetscErrorCode AbutMeshCreate_Forest(AbutMesh);
 PETSC_INTERN PetscErrorCode AbutMeshCreate_Triangles(AbutMesh);
 PETSC_INTERN PetscErrorCode AbutTrianglesSplit_Private(AbutMesh, DM, DMLabel, DM *);

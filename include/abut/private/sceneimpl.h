@@ -64,7 +64,7 @@ struct _p_AbutScene {
   AbutAdaptor   adaptor;   /* NULL unless asked for */
   AbutRecorder  recorder;
   PetscInt      start;
-  PetscBool     interleave, setupcalled;
+  PetscBool     interleave, split, setupcalled;
   PetscReal     eps_u;
   PetscReal     loop_share;         /* of the estimated error that the loop may leave on a mesh to be refined */
   PetscBool     cold;               /* every mesh begins without what the last one left */
@@ -122,6 +122,9 @@ PETSC_INTERN PetscErrorCode AbutSceneEndStep_Private(AbutScene, AbutAdaptVerdict
 PETSC_INTERN PetscErrorCode AbutSceneNextStep_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutSceneArchiveStep_Private(AbutScene, AbutArchive);
 PETSC_INTERN PetscErrorCode AbutSceneLeaveTrace_Private(AbutScene, PetscBool);
+/* split.c */
+PETSC_INTERN PetscErrorCode AbutSceneSplitFromOptions_Private(AbutScene, AbutOptionItems);
+PETSC_INTERN PetscErrorCode AbutSceneSplit_Private(AbutScene, PetscBool);
 /* edges.c */
 PETSC_INTERN PetscErrorCode AbutSceneKeepEdges_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutSideTouches_Private(AbutMesh, PetscInt, const PetscReal[2], PetscBool *);
