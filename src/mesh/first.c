@@ -269,9 +269,13 @@ PetscErrorCode AbutMeshIsSideStraight(AbutMesh mesh, PetscInt side, PetscBool *s
 -  x    - [2] the point
 
    Output Parameter:
-.  covers - `PETSC_TRUE` if it lies in the box, or in a cell of the file, or on its border; for a file with curved sides always
+.  covers - `PETSC_TRUE` if it lies in the box, or in a cell of the file and inside all curves, or on the border of those
 
    Level: developer
+
+   Note:
+   Such a point lies in a cell of every later mesh. One between a cell of the file and a curve that bends outwards may not, and is not
+   covered.
 
 .seealso: `AbutMeshGetBox()`, `AbutMeshSetFile()`
 @*/
@@ -280,8 +284,7 @@ PetscErrorCode AbutMeshCovers(AbutMesh mesh, const PetscReal x[2], PetscBool *co
   const AbutFirst f = mesh->first;
 
   PetscFunctionBegin;
-  *covers = f ? f->curved
-              : (PetscBool)(x[0] >= mesh->lower[0] && x[0] <= mesh->upper[0] && x[1] >= mesh->lower[1] && x[1] <= mesh->upper[1]);
+  *covers = (PetscBool)(!f && x[0] >= mesh->lower[0] && x[0] <= mesh->upper[0] && x[1] >= mesh->lower[1] && x[1] <= mesh->upper[1]);
   for (PetscInt c = 0; f && c < f->ncells && !*covers; ++c) {
     *covers = PETSC_TRUE;
     for (PetscInt k = 0; k < f->corners && *covers; ++k) {
@@ -290,6 +293,12 @@ PetscErrorCode AbutMeshCovers(AbutMesh mesh, const PetscReal x[2], PetscBool *co
 
       *covers = (PetscBool)(d[0] * (x[1] - a[1]) - d[1] * (x[0] - a[0]) >= -1e-9 * (d[0] * d[0] + d[1] * d[1]));
     }
+  }
+  if (f && *covers) {
+    PetscBool beyond;
+
+    PetscCall(AbutFirstBeyondCurve_Private(f, x, &beyond));
+    *covers = (PetscBool)!beyond;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

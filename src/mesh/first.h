@@ -48,6 +48,7 @@ PETSC_INTERN PetscErrorCode AbutFirstOutline_Private(const AbutGmsh *, AbutFirst
 PETSC_INTERN PetscErrorCode AbutFirstCurvesFromOptions_Private(AbutMesh);
 PETSC_INTERN PetscErrorCode AbutCurveDestroy_Private(AbutCurve *);
 PETSC_INTERN PetscErrorCode AbutFirstMoveToCurve_Private(AbutFirst, PetscInt, PetscReal[2]);
+PETSC_INTERN PetscErrorCode AbutFirstBeyondCurve_Private(AbutFirst, const PetscReal[2], PetscBool *);
 
 #define ABUT_CURVE_AREA 0.05 /* what must be left of a cell whose vertices move to a curve */
 PETSC_INTERN PetscErrorCode AbutFirstCheckMoved_Private(AbutMesh, PetscInt);
