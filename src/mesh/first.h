@@ -1,5 +1,6 @@
 #pragma once
 
+#include <abut/private/sysimpl.h>
 #include <abut/private/meshimpl.h>
 
 /* What a gmsh file says, on one rank; vertices are numbered from 0 in the order of the file */
@@ -15,7 +16,7 @@ typedef struct {
 
 /* What is wrong with an input that only one rank reads: a text, empty if all is well */
 typedef struct {
-  char text[512];
+  char text[ABUT_LIST + 512];
 } AbutFault;
 
 PETSC_INTERN PetscErrorCode AbutGmshRead_Private(const char[], const char[], AbutGmsh *, char[], AbutFault *);

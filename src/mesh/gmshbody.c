@@ -67,14 +67,12 @@ static PetscErrorCode AbutGmshCells_Private(AbutGmshFile *f, const char region[]
     n[k] = (PetscInt)(lists[k]->n = kept);
   }
   if (physical < 0) {
-    PetscCall(PetscSNPrintf(fault->text, sizeof(fault->text), "there is no physical surface \"%s\"; the file has", region));
-    for (size_t i = 0, has = 0; i <= f->nnames; ++i) {
-      const size_t at = strlen(fault->text);
+    char names[ABUT_LIST] = "";
 
-      if (i == f->nnames && !has) PetscCall(PetscSNPrintf(fault->text + at, sizeof(fault->text) - at, " none with a name"));
-      if (i == f->nnames || f->name[i].dim != 2) continue;
-      PetscCall(PetscSNPrintf(fault->text + at, sizeof(fault->text) - at, "%s %s", has++ ? "," : "", f->name[i].text));
-    }
+    for (size_t i = 0; i < f->nnames; ++i)
+      if (f->name[i].dim == 2) PetscCall(AbutListAddItem_Private(names, sizeof(names), f->name[i].text));
+    PetscCall(PetscSNPrintf(fault->text, sizeof(fault->text), "there is no physical surface \"%s\"; the file has %s", region,
+                            names[0] ? names : "none with a name"));
   } else if (!n[0] && !n[1]) PetscCall(PetscStrncpy(fault->text, "there are no triangles and no quads", sizeof(fault->text)));
   else if (n[0] && n[1])
     PetscCall(PetscSNPrintf(fault->text, sizeof(fault->text),

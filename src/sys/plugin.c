@@ -4,25 +4,9 @@
 #include <dirent.h>
 #include <dlfcn.h>
 #include <limits.h>
-#include <abut/private/pluginimpl.h> /*I "abutsys.h" I*/
+#include <abut/private/sysimpl.h> /*I "abutsys.h" I*/
 
 #define ABUT_PLUGIN_SUFFIX "." PETSC_SLSUFFIX
-
-/* Appends an item to a list like "fembem, zz" unless it is there already */
-PetscErrorCode AbutListAddItem_Private(char list[], size_t len, const char item[])
-{
-  const char *at;
-  size_t      n;
-
-  PetscFunctionBegin;
-  PetscCall(PetscStrlen(item, &n));
-  for (at = strstr(list, item); at; at = strstr(at + 1, item)) {
-    if ((at == list || at[-1] == ' ') && (!at[n] || at[n] == ',')) PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  if (list[0]) PetscCall(PetscStrlcat(list, ", ", len));
-  PetscCall(PetscStrlcat(list, item, len));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /* Where plugins are looked for: `-plugin_path`, or else the folder of the library this function is in, and its subfolder `abut` */
 static PetscErrorCode AbutPluginGetFolders_Private(char folder[2][PETSC_MAX_PATH_LEN], PetscInt *n)

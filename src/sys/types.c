@@ -1,4 +1,4 @@
-#include <abut/private/pluginimpl.h> /*I "abutsys.h" I*/
+#include <abut/private/sysimpl.h> /*I "abutsys.h" I*/
 
 /* Types that a class knows by name: those that have registered, and those of plugins that may be opened */
 
@@ -56,7 +56,7 @@ PetscErrorCode AbutPluginListTypes(const char kind[], PetscFunctionList list, ch
 PetscErrorCode AbutPluginFindType(MPI_Comm comm, const char key[], const char kind[], const char class[], const PetscFunctionList *list,
                                   const char type[], PetscVoidFunction *create)
 {
-  char      names[512];
+  char      names[ABUT_LIST];
   PetscBool found;
 
   PetscFunctionBegin;
