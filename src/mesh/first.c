@@ -111,8 +111,9 @@ PetscErrorCode AbutFirstDescribe_Private(AbutMesh mesh, char text[], size_t len)
 
    Notes:
    The cells are all triangles or all quads, with nodes at their corners. The physical curves of the file, with their names or else their
-   numbers, are the sides of the body; every line of the boundary belongs to one. Lengths are in the unit of the scene. Clockwise cells are
-   turned round, and nodes of no cell do not count. Whatever else is wrong with the file is bad input: one line, on all ranks.
+   numbers, are the sides of the body; every line of the boundary belongs to one. No name may be the number of
+   another group of its kind that has none. Lengths are in the unit of the scene. Clockwise cells are turned round, and nodes of no cell do
+   not count. Whatever else is wrong with the file is bad input: one line, on all ranks.
 
    The box of the mesh, `AbutMeshGetBox()`, is then the smallest around all vertices.
 

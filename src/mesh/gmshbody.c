@@ -31,12 +31,31 @@ static PetscInt64 AbutGmshFindRegion_Private(const AbutGmshFile *f, const char r
   return -1;
 }
 
-/* Two physical groups of one kind with one name */
+/* Whether the file has elements of a physical group of a kind whose number is this text, and no name for it */
+static PetscErrorCode AbutGmshIsNumber_Private(const AbutGmshFile *f, PetscInt64 dim, const char text[], PetscBool *is)
+{
+  const AbutGmshElements *lists[2] = {dim == 1 ? &f->lines : &f->triangles, dim == 1 ? NULL : &f->quads};
+  const PetscInt64        number   = strtoll(text, NULL, 10);
+  char                    digits[32];
+
+  PetscFunctionBegin;
+  *is = PETSC_FALSE;
+  PetscCall(PetscSNPrintf(digits, sizeof(digits), "%lld", (long long)number));
+  if (dim < 1 || dim > 2 || number <= 0 || strcmp(digits, text)) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt k = 0; k < 2 && lists[k]; ++k)
+    for (size_t i = 0; i < lists[k]->n; ++i)
+      if (lists[k]->element[i].physical == number) *is = PETSC_TRUE;
+  for (size_t i = 0; i < f->nnames; ++i)
+    if (f->name[i].dim == dim && f->name[i].tag == number) *is = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Two physical groups of one kind with one name, or with a name that is the number by which another is known */
 static PetscErrorCode AbutGmshCheckNames_Private(const AbutGmshFile *f, AbutFault *fault)
 {
   PetscFunctionBegin;
   for (size_t i = 0; i < f->nnames; ++i) {
-    PetscBool same = PETSC_FALSE;
+    PetscBool same = PETSC_FALSE, number;
 
     if (f->name[i].dim == 1 && strlen(f->name[i].text) >= ABUT_SIDE_NAME_MAX)
       PetscCall(PetscSNPrintf(fault->text, sizeof(fault->text), "the name \"%.70s...\" of a physical curve is longer than %d letters",
@@ -46,6 +65,11 @@ static PetscErrorCode AbutGmshCheckNames_Private(const AbutGmshFile *f, AbutFaul
     if (same)
       PetscCall(PetscSNPrintf(fault->text, sizeof(fault->text),
                               "two physical %s have the name \"%s\"; give each one of its own, without case",
+                              f->name[i].dim == 1 ? "curves" : "surfaces", f->name[i].text));
+    PetscCall(AbutGmshIsNumber_Private(f, f->name[i].dim, f->name[i].text, &number));
+    if (number)
+      PetscCall(PetscSNPrintf(fault->text, sizeof(fault->text),
+                              "two physical %s are \"%s\": one has this name, another this number and no name; give the other a name",
                               f->name[i].dim == 1 ? "curves" : "surfaces", f->name[i].text));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
