@@ -122,6 +122,23 @@ static PetscErrorCode AbutGmshCells_Private(AbutGmshFile *f, const char region[]
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The nodes that are corners of cells lie in a plane along x and y, but for what the numbers of a mesher that turned it lost */
+static PetscErrorCode AbutGmshCheckPlane_Private(const AbutGmshFile *f, const PetscInt vertex[], PetscInt first, AbutFault *fault)
+{
+  const PetscReal tiny = 1e-9, *x = f->node[first].x; /* of the size of the mesh */
+  PetscReal       size = 0.;
+
+  PetscFunctionBegin;
+  for (size_t i = 0; i < f->nnodes; ++i)
+    for (PetscInt d = 0; d < 2 && vertex[i] >= 0; ++d) size = PetscMax(size, PetscAbsReal(f->node[i].x[d] - x[d]));
+  for (size_t i = 0; i < f->nnodes && !fault->text[0]; ++i)
+    if (vertex[i] >= 0 && PetscAbsReal(f->node[i].x[2] - x[2]) > tiny * size)
+      PetscCall(PetscSNPrintf(fault->text, sizeof(fault->text),
+                              "node %lld lies at z = %g, others at %g; give a mesh in the plane of x and y", (long long)f->node[i].number,
+                              (double)f->node[i].x[2], (double)x[2]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Keeps the nodes that are corners of cells, and lines between two of them */
 static PetscErrorCode AbutGmshVertices_Private(const AbutGmshFile *f, AbutGmsh *out, AbutFault *fault)
 {
@@ -131,15 +148,12 @@ static PetscErrorCode AbutGmshVertices_Private(const AbutGmshFile *f, AbutGmsh *
   PetscCall(PetscMalloc1(f->nnodes, &vertex));
   for (size_t i = 0; i < f->nnodes; ++i) vertex[i] = -1;
   for (PetscInt k = 0; k < out->corners * out->ncells; ++k) vertex[out->cell[k]] = 0;
+  PetscCall(AbutGmshCheckPlane_Private(f, vertex, out->cell[0], fault));
   PetscCall(PetscMalloc1(2 * f->nnodes, &out->x));
   for (size_t i = 0; i < f->nnodes; ++i) {
     if (vertex[i] < 0) continue;
     vertex[i] = out->nvertices++;
     for (PetscInt d = 0; d < 2; ++d) out->x[2 * vertex[i] + d] = f->node[i].x[d];
-    if (f->node[i].x[2] != f->node[out->cell[0]].x[2] && !fault->text[0])
-      PetscCall(PetscSNPrintf(fault->text, sizeof(fault->text),
-                              "node %lld lies at z = %g, others at %g; give a mesh in the plane of x and y", (long long)f->node[i].number,
-                              (double)f->node[i].x[2], (double)f->node[out->cell[0]].x[2]));
   }
   PetscCall(PetscMalloc1(3 * f->lines.n, &out->line));
   for (size_t i = 0; i < f->lines.n; ++i) {

@@ -42,6 +42,7 @@ def bad_meshes():
     yield "lost.msh", old.replace("\n13 3 2 5 5 1 2 7 6\n", "\n13 3 2 5 5 1 2 99 6\n").encode()
     yield "same.msh", old.replace("\n2 0.5 0.0", "\n1 0.5 0.0").encode()
     yield "high.msh", old.replace("\n2 0.5 0.0 0.0\n", "\n2 0.5 0.0 0.1\n").encode()
+    yield "tiny.msh", text(box((0, 0), (2e-9, 1e-9), 4, 2), version=2.2).replace(b"\n2 5e-10 0.0 0.0\n", b"\n2 5e-10 0.0 1e-10\n")
     yield "nan.msh", old.replace("\n2 0.5 0.0 0.0\n", "\n2 0.5 nan 0.0\n").encode()
     yield "many.msh", old.replace("$Nodes\n15\n", "$Nodes\n1500000000000\n").encode()
     yield "mixed.msh", text(change(PLATE, cells=lambda c: c[1:] + [c[0][:3], (c[0][0], c[0][2], c[0][3])]))
