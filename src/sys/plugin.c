@@ -35,6 +35,33 @@ static PetscErrorCode AbutPluginGetFolders_Private(char folder[2][PETSC_MAX_PATH
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The files in which `AbutPluginLoad()` looks for a type: none for a name that is a path */
+static PetscErrorCode AbutPluginGetFiles_Private(const char kind[], const char name[], char file[2][2 * PETSC_MAX_PATH_LEN], PetscInt *n)
+{
+  char folder[2][PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBegin;
+  *n = 0;
+  if (!name[0] || strchr(name, '/')) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AbutPluginGetFolders_Private(folder, n));
+  for (PetscInt i = 0; i < *n; ++i)
+    PetscCall(PetscSNPrintf(file[i], sizeof(file[i]), "%s/lib%s_%s" ABUT_PLUGIN_SUFFIX, folder[i], kind, name));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The same as a list for messages */
+PetscErrorCode AbutPluginListFiles_Private(const char kind[], const char name[], char list[], size_t len)
+{
+  char     file[2][2 * PETSC_MAX_PATH_LEN];
+  PetscInt n;
+
+  PetscFunctionBegin;
+  list[0] = 0;
+  PetscCall(AbutPluginGetFiles_Private(kind, name, file, &n));
+  for (PetscInt i = 0; i < n; ++i) PetscCall(AbutListAddItem_Private(list, len, file[i]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* PETSc would open a library without a register function and say nothing: find out first what is wrong with it, "" if nothing is */
 static PetscErrorCode AbutPluginDiagnose_Private(const char path[], char why[], size_t len)
 {
@@ -176,17 +203,15 @@ PetscErrorCode AbutPluginAppendFromOptions(MPI_Comm comm)
 @*/
 PetscErrorCode AbutPluginLoad(MPI_Comm comm, const char kind[], const char name[], PetscBool *found)
 {
-  char     folder[2][PETSC_MAX_PATH_LEN], path[2 * PETSC_MAX_PATH_LEN];
+  char     file[2][2 * PETSC_MAX_PATH_LEN];
   PetscInt n;
 
   PetscFunctionBegin;
   *found = PETSC_FALSE;
-  if (!name[0] || strchr(name, '/')) PetscFunctionReturn(PETSC_SUCCESS); /* a name, not a path */
-  PetscCall(AbutPluginGetFolders_Private(folder, &n));
+  PetscCall(AbutPluginGetFiles_Private(kind, name, file, &n));
   for (PetscInt i = 0; i < n && !*found; ++i) {
-    PetscCall(PetscSNPrintf(path, sizeof(path), "%s/lib%s_%s" ABUT_PLUGIN_SUFFIX, folder[i], kind, name));
-    PetscCall(AbutPluginTestFile_Private(comm, path, found));
-    if (*found) PetscCall(AbutPluginOpen_Private(comm, path));
+    PetscCall(AbutPluginTestFile_Private(comm, file[i], found));
+    if (*found) PetscCall(AbutPluginOpen_Private(comm, file[i]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

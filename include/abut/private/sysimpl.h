@@ -33,6 +33,7 @@ PETSC_INTERN PetscErrorCode AbutErrorKeep_Private(MPI_Comm, int, const char *, c
 /* Lists of names in messages: "fembem, zz"; one that would be longer ends in "..." */
 #define ABUT_LIST 1024
 PETSC_INTERN PetscErrorCode AbutListAddItem_Private(char[], size_t, const char[]);
+PETSC_INTERN PetscErrorCode AbutPluginListFiles_Private(const char[], const char[], char[], size_t);
 
 typedef long long AbutWord; /* of the file: 64 bits everywhere */
 
