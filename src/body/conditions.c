@@ -200,6 +200,7 @@ static PetscErrorCode AbutBodyLoad_Private(AbutBody body, const AbutMeshTopology
 
   PetscFunctionBegin;
   PetscCall(VecZeroEntries(body->load));
+  PetscCall(AbutBodyLogHooks_Private(body, ABUT_HOOK_TRACTION, -1, PETSC_TRUE));
   for (PetscInt i = 0; i < b->n; ++i)
     for (PetscInt d = 0; d < 2; ++d) {
       if (!AbutBodyHasTraction_Private(body, b->side[i], d)) continue;
@@ -211,6 +212,7 @@ static PetscErrorCode AbutBodyLoad_Private(AbutBody body, const AbutMeshTopology
         if (node >= t->firstowned && node < t->firstowned + t->nowned) PetscCall(VecSetValue(body->load, 2 * node + d, m[k], ADD_VALUES));
       }
     }
+  PetscCall(AbutBodyLogHooks_Private(body, ABUT_HOOK_TRACTION, -1, PETSC_FALSE));
   PetscCall(VecAssemblyBegin(body->load));
   PetscCall(VecAssemblyEnd(body->load));
   PetscFunctionReturn(PETSC_SUCCESS);

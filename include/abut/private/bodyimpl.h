@@ -136,6 +136,7 @@ PETSC_INTERN PetscErrorCode    AbutBodyUngatherBoundary_Private(AbutBody, const 
 PETSC_INTERN PetscErrorCode    AbutHooksDestroy_Private(AbutHook *);
 /* forces.c */
 PETSC_INTERN PetscErrorCode AbutBodyHookForces_Private(AbutBody);
+PETSC_INTERN PetscErrorCode AbutBodyLogHooks_Private(AbutBody, AbutHookType, PetscInt, PetscBool);
 PETSC_INTERN PetscBool      AbutBodyHasTraction_Private(AbutBody, PetscInt, PetscInt);
 PETSC_INTERN PetscErrorCode AbutBodyHookTraction_Private(AbutBody, PetscInt, const PetscReal[2], const PetscReal[2], PetscReal[2]);
 /* foundation.c */
