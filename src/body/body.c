@@ -279,6 +279,22 @@ PetscErrorCode AbutBodyGetName(AbutBody body, const char *name[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The body of a name, compared without case; NULL if there is none, and their names for the message */
+PetscErrorCode AbutBodyFind_Private(PetscInt n, AbutBody bodies[], const char name[], AbutBody *body, char all[], size_t len)
+{
+  PetscFunctionBegin;
+  *body  = NULL;
+  all[0] = 0;
+  for (PetscInt i = 0; i < n; ++i) {
+    PetscBool match;
+
+    PetscCall(AbutListAddItem_Private(all, len, ((PetscObject)bodies[i])->name));
+    PetscCall(PetscStrcasecmp(name, ((PetscObject)bodies[i])->name, &match));
+    if (match) *body = bodies[i];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
    AbutBodyGetMesh - The mesh of a body
 

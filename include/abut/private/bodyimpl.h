@@ -123,6 +123,7 @@ PETSC_INTERN PetscErrorCode    AbutBodyChooseSolver_Private(AbutBody, PetscInt, 
 PETSC_INTERN PetscErrorCode    AbutBodyGiveFactorRoom_Private(AbutBody);
 PETSC_INTERN PetscErrorCode    AbutBodyReset_Private(AbutBody);
 PETSC_INTERN PetscErrorCode    AbutBodyNeedSetUp_Private(AbutBody);
+PETSC_INTERN PetscErrorCode    AbutBodyFind_Private(PetscInt, AbutBody[], const char[], AbutBody *, char[], size_t);
 PETSC_INTERN PetscErrorCode    AbutBodyModesSetUp_Private(AbutBody);
 PETSC_INTERN PetscErrorCode    AbutBodyModesReset_Private(AbutBody);
 PETSC_INTERN PetscErrorCode    AbutBodyFactor_Private(AbutBody);
