@@ -140,6 +140,8 @@ PETSC_INTERN PetscErrorCode AbutBodyHookForces_Private(AbutBody);
 PETSC_INTERN PetscErrorCode AbutBodyLogHooks_Private(AbutBody, AbutHookType, PetscInt, PetscBool);
 PETSC_INTERN PetscBool      AbutBodyHasTraction_Private(AbutBody, PetscInt, PetscInt);
 PETSC_INTERN PetscErrorCode AbutBodyHookTraction_Private(AbutBody, PetscInt, const PetscReal[2], const PetscReal[2], PetscReal[2]);
+/* side.c */
+PETSC_INTERN PetscReal AbutElementNormal_Private(const PetscReal[2], const PetscReal[2], PetscReal[2]);
 /* foundation.c */
 PETSC_INTERN PetscErrorCode AbutBodyAssembleFoundation_Private(AbutBody);
 PETSC_INTERN PetscErrorCode AbutBodyHoldsSide_Private(AbutBody, PetscInt, PetscInt, PetscBool *);
