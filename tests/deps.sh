@@ -7,7 +7,7 @@
 cd "${1:-$(dirname "$0")/..}" || exit 2
 exec awk -v plugins="$(ls plugins)" '
 function rank(package) { return package in ranks ? ranks[package] : -1 }
-function package_of(name) { return name == "retro" || name == "plugin" ? "sys" : name } # the two headers not named after a package
+function package_of(name) { return name == "retro" ? "sys" : name } # the header not named after a package
 function fail(what) { printf "%s:%d: %s\n", FILENAME, FNR, what; bad = 1 }
 function without_comments(line,    end) {
   if (comment) { if (!(end = index(line, "*/"))) return ""; line = substr(line, end + 2); comment = 0 }

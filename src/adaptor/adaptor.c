@@ -1,5 +1,5 @@
 #include <abut/private/adaptorimpl.h> /*I "abutadaptor.h" I*/
-#include <abut/private/pluginimpl.h>
+#include <abut/private/sysimpl.h>
 
 PetscClassId ABUTADAPTOR_CLASSID;
 
@@ -112,7 +112,7 @@ PetscErrorCode AbutAdaptorSetType(AbutAdaptor adaptor, AbutAdaptorType type)
 {
   PetscErrorCode (*create)(AbutAdaptor) = NULL;
   const char **registered               = NULL;
-  char         names[256]               = "";
+  char         names[ABUT_LIST]         = "";
   int          n                        = 0;
   PetscBool    same;
 

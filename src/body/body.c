@@ -335,6 +335,22 @@ PetscErrorCode AbutBodyGetName(AbutBody body, const char *name[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The body of a name, compared without case; NULL if there is none, and their names for the message */
+PetscErrorCode AbutBodyFind_Private(PetscInt n, AbutBody bodies[], const char name[], AbutBody *body, char all[], size_t len)
+{
+  PetscFunctionBegin;
+  *body  = NULL;
+  all[0] = 0;
+  for (PetscInt i = 0; i < n; ++i) {
+    PetscBool match;
+
+    PetscCall(AbutListAddItem_Private(all, len, ((PetscObject)bodies[i])->name));
+    PetscCall(PetscStrcasecmp(name, ((PetscObject)bodies[i])->name, &match));
+    if (match) *body = bodies[i];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
    AbutBodyGetMesh - The mesh of a body
 
@@ -380,31 +396,6 @@ PetscErrorCode AbutBodyGetKSP(AbutBody body, KSP *ksp)
 }
 
 /*@
-   AbutBodyGetSize - The displacement unknowns of a body, prescribed ones included, hanging ones not
-
-   Not Collective
-
-   Input Parameter:
-.  body - the body, set up
-
-   Output Parameter:
-.  n - unknowns over all ranks
-
-   Level: beginner
-
-.seealso: `AbutBodySetUp()`
-@*/
-PetscErrorCode AbutBodyGetSize(AbutBody body, PetscInt *n)
-{
-  const AbutMeshTopology *t;
-
-  PetscFunctionBegin;
-  PetscCall(AbutMeshGetTopology(body->mesh, &t));
-  *n = 2 * t->nglobal;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
    AbutBodyGetHeight - The extent of a body along a direction
 
    Not Collective
@@ -427,58 +418,5 @@ PetscErrorCode AbutBodyGetHeight(AbutBody body, const PetscReal normal[2], Petsc
   PetscFunctionBegin;
   PetscCall(AbutMeshGetBox(body->mesh, lower, upper));
   *height = PetscAbsReal(normal[0]) * (upper[0] - lower[0]) + PetscAbsReal(normal[1]) * (upper[1] - lower[1]);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-   AbutBodyCreateVec - Creates a vector of the body's unknowns: nodal displacements or forces
-
-   Collective
-
-   Input Parameter:
-.  body - the body, its mesh set up
-
-   Output Parameter:
-.  v - the vector, zero, block size 2
-
-   Level: intermediate
-
-.seealso: `AbutBodySolve()`, `AbutBodyCreateCellVec()`
-@*/
-PetscErrorCode AbutBodyCreateVec(AbutBody body, Vec *v)
-{
-  const AbutMeshTopology *t;
-
-  PetscFunctionBegin;
-  PetscCall(AbutMeshGetTopology(body->mesh, &t));
-  PetscCall(VecCreate(PetscObjectComm((PetscObject)body), v));
-  PetscCall(VecSetSizes(*v, 2 * t->nowned, 2 * t->nglobal));
-  PetscCall(VecSetBlockSize(*v, 2));
-  PetscCall(VecSetType(*v, VECSTANDARD));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-   AbutBodyCreateCellVec - Creates a vector with one value per cell
-
-   Collective
-
-   Input Parameter:
-.  body - the body, its mesh set up
-
-   Output Parameter:
-.  v - the vector, zero; local entry c belongs to local cell c
-
-   Level: intermediate
-
-.seealso: `AbutEstimatorEstimate()`
-@*/
-PetscErrorCode AbutBodyCreateCellVec(AbutBody body, Vec *v)
-{
-  const AbutMeshTopology *t;
-
-  PetscFunctionBegin;
-  PetscCall(AbutMeshGetTopology(body->mesh, &t));
-  PetscCall(VecCreateMPI(PetscObjectComm((PetscObject)body), t->ncells, PETSC_DETERMINE, v));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -335,11 +335,13 @@ PetscErrorCode AbutBodyGetBoundary(AbutBody body, AbutBoundary **boundary)
   PetscCall(PetscArraycpy(b->next, skeleton->next, n));
   PetscCall(PetscArraycpy(b->x, skeleton->x, 2 * nodes));
   PetscCall(PetscArraycpy(b->side, skeleton->side, n));
+  PetscCall(AbutBodyLogHooks_Private(body, ABUT_HOOK_TRACTION, -1, PETSC_TRUE));
   for (PetscInt i = 0; i < n; ++i)
     for (PetscInt d = 0; d < 2; ++d) {
       b->condition[2 * i + d] = body->condition[b->side[i]][d].type;
       PetscCall(AbutBoundaryProjectTraction_Private(body, b, i, d));
     }
+  PetscCall(AbutBodyLogHooks_Private(body, ABUT_HOOK_TRACTION, -1, PETSC_FALSE));
   for (PetscInt k = 0; k < 2 * (b->order + 1) * n; ++k) b->traction[k] *= body->factor;
   PetscCall(AbutBodyGatherBoundary_Private(body, body->u, &value));
   PetscCall(PetscArraycpy(b->u, value, 2 * nodes));

@@ -166,11 +166,10 @@ PetscErrorCode AbutBodyGetCondition(AbutBody body, PetscInt side, PetscInt compo
 PetscErrorCode AbutBodyEdgeMoments_Private(AbutBody body, PetscInt side, PetscInt component, const PetscReal a[2], const PetscReal b[2],
                                            PetscBool whole, PetscReal m[])
 {
-  const AbutCondition *c      = &body->condition[side][component];
-  const PetscReal      length = PetscSqrtReal(PetscSqr(b[0] - a[0]) + PetscSqr(b[1] - a[1])),
-                  normal[2]   = {(b[1] - a[1]) / length, (a[0] - b[0]) / length};
-  PetscReal z[12 + 4 * ABUT_ORDER_MAX], w[12 + 4 * ABUT_ORDER_MAX], N[ABUT_SIDE_NODES_MAX];
-  PetscInt  p;
+  const AbutCondition *c = &body->condition[side][component];
+  PetscReal            normal[2], length = AbutElementNormal_Private(a, b, normal);
+  PetscReal            z[12 + 4 * ABUT_ORDER_MAX], w[12 + 4 * ABUT_ORDER_MAX], N[ABUT_SIDE_NODES_MAX];
+  PetscInt             p;
 
   PetscFunctionBegin;
   PetscCall(AbutMeshGetOrder(body->mesh, &p));
@@ -200,6 +199,7 @@ static PetscErrorCode AbutBodyLoad_Private(AbutBody body, const AbutMeshTopology
 
   PetscFunctionBegin;
   PetscCall(VecZeroEntries(body->load));
+  PetscCall(AbutBodyLogHooks_Private(body, ABUT_HOOK_TRACTION, -1, PETSC_TRUE));
   for (PetscInt i = 0; i < b->n; ++i)
     for (PetscInt d = 0; d < 2; ++d) {
       if (!AbutBodyHasTraction_Private(body, b->side[i], d)) continue;
@@ -211,6 +211,7 @@ static PetscErrorCode AbutBodyLoad_Private(AbutBody body, const AbutMeshTopology
         if (node >= t->firstowned && node < t->firstowned + t->nowned) PetscCall(VecSetValue(body->load, 2 * node + d, m[k], ADD_VALUES));
       }
     }
+  PetscCall(AbutBodyLogHooks_Private(body, ABUT_HOOK_TRACTION, -1, PETSC_FALSE));
   PetscCall(VecAssemblyBegin(body->load));
   PetscCall(VecAssemblyEnd(body->load));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -82,6 +82,18 @@ PetscBool AbutBodyHasTraction_Private(AbutBody body, PetscInt side, PetscInt com
   return (PetscBool)(c->value != NULL);
 }
 
+/* The events of hooks of a type begin or end, on one side or (-1) all of them: once for all points, of which there are many */
+PetscErrorCode AbutBodyLogHooks_Private(AbutBody body, AbutHookType type, PetscInt side, PetscBool begin)
+{
+  PetscFunctionBegin;
+  for (AbutHook h = body->hooks; h; h = h->next) {
+    if (h->type != type || (side >= 0 && h->side != side)) continue;
+    if (begin) PetscCall(PetscLogEventBegin(h->event, body, 0, 0, 0));
+    else PetscCall(PetscLogEventEnd(h->event, body, 0, 0, 0));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Adds the tractions of hooks at a point of a side */
 PetscErrorCode AbutBodyHookTraction_Private(AbutBody body, PetscInt side, const PetscReal x[2], const PetscReal normal[2], PetscReal t[2])
 {
@@ -90,9 +102,7 @@ PetscErrorCode AbutBodyHookTraction_Private(AbutBody body, PetscInt side, const 
     PetscReal more[2];
 
     if (h->type != ABUT_HOOK_TRACTION || h->side != side) continue;
-    PetscCall(PetscLogEventBegin(h->event, body, 0, 0, 0));
     PetscCall((*h->call.traction)(x, normal, more, h->ctx));
-    PetscCall(PetscLogEventEnd(h->event, body, 0, 0, 0));
     for (PetscInt d = 0; d < 2; ++d) t[d] += more[d];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -181,9 +191,7 @@ PetscErrorCode AbutBodyGetSideOffset(AbutBody body, PetscInt side, const PetscRe
     PetscReal more;
 
     if (h->type != ABUT_HOOK_OFFSET || h->side != side) continue;
-    PetscCall(PetscLogEventBegin(h->event, body, 0, 0, 0));
     PetscCall((*h->call.offset)(x, &more, h->ctx));
-    PetscCall(PetscLogEventEnd(h->event, body, 0, 0, 0));
     *offset += more;
   }
   PetscFunctionReturn(PETSC_SUCCESS);

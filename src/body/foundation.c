@@ -9,17 +9,6 @@ static void AbutSprings_Private(const PetscReal k[2], const PetscReal n[2], Pets
   for (PetscInt i = 0; i < 4; ++i) C[i] = (k[0] - k[1]) * n[i / 2] * n[i % 2] + (i % 3 ? 0. : k[1]);
 }
 
-/* Outward unit normal and length of a boundary element */
-static PetscReal AbutElementNormal_Private(const AbutBoundary *b, PetscInt e, PetscReal n[2])
-{
-  const PetscReal *p = b->x + 2 * AbutBoundaryNode(b, e, 0), *q = b->x + 2 * AbutBoundaryNode(b, e, b->order);
-  const PetscReal  length = PetscSqrtReal(PetscSqr(q[0] - p[0]) + PetscSqr(q[1] - p[1]));
-
-  n[0] = (q[1] - p[1]) / length;
-  n[1] = (p[0] - q[0]) / length;
-  return length;
-}
-
 /* Room for the rows of boundary nodes: those of two elements meet in a vertex */
 static PetscErrorCode AbutBodyCreateSpringMat_Private(AbutBody body, const AbutMeshTopology *t)
 {
@@ -89,7 +78,8 @@ PetscErrorCode AbutBodyAssembleFoundation_Private(AbutBody body)
     PetscCall(PetscLogEventBegin(h->event, body, 0, 0, 0));
     if (!body->S) PetscCall(AbutBodyCreateSpringMat_Private(body, t));
     for (PetscInt e = 0; e < b->n; ++e) {
-      PetscReal normal[2], C[4], length = AbutElementNormal_Private(b, e, normal);
+      PetscReal normal[2], C[4],
+        length = AbutElementNormal_Private(b->x + 2 * AbutBoundaryNode(b, e, 0), b->x + 2 * AbutBoundaryNode(b, e, b->order), normal);
 
       AbutSprings_Private(h->stiffness, normal, C);
       if (b->side[e] == h->side) PetscCall(AbutBodyElementSprings_Private(body, t, e, C, length));
@@ -150,7 +140,7 @@ PetscErrorCode AbutBodyAddFoundationTraction_Private(AbutBody body, AbutBoundary
   for (PetscInt e = 0; e < b->n && body->S; ++e) {
     PetscReal normal[2], k[2], C[4];
 
-    (void)AbutElementNormal_Private(b, e, normal);
+    (void)AbutElementNormal_Private(b->x + 2 * AbutBoundaryNode(b, e, 0), b->x + 2 * AbutBoundaryNode(b, e, b->order), normal);
     PetscCall(AbutBodyGetFoundation(body, b->side[e], &k[0], &k[1]));
     AbutSprings_Private(k, normal, C);
     for (PetscInt k = 0; k <= b->order; ++k) {

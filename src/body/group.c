@@ -1,8 +1,8 @@
 #include <abut/private/bodyimpl.h> /*I "abutbody.h" I*/
 
-/* The ranks that have a body. Mesh, boundary and vectors belong to all ranks of the body, so that whatever is asked of it is known everywhere;
-   matrices and solver belong to the group of those that have cells, so that bodies on disjoint groups are solved at the same time. The other
-   ranks, together, are a group with an empty body: no loop over groups needs to ask which one it is in, but for solving. */
+/* The ranks that have a body. Mesh, boundary and vectors belong to all ranks of the body, so that whatever is asked of it is known
+   everywhere; matrices and solver belong to the group of those that have cells, so that bodies on disjoint groups are solved at the same
+   time. The other ranks, together, are a group with an empty body: nobody needs to ask which group it is in, but for solving. */
 
 /* What is left of a group when all that belongs to a mesh is freed */
 PetscErrorCode AbutBodyLeaveGroup_Private(AbutBody body)
@@ -31,8 +31,8 @@ PetscErrorCode AbutBodyLeaveGroup_Private(AbutBody body)
    Notes:
    A mesh that is set up moves to these ranks. The solver is made anew, with the options of the body.
 
-   What needs all ranks (setting up mesh, boundary and vectors, traces, sums) still needs all of them; assembling, factors and solves need the
-   group alone. Whoever wants bodies to be solved side by side calls `AbutBodySolve()` for all before asking what became of any.
+   What needs all ranks (setting up mesh, boundary and vectors, traces, sums) still needs all of them; assembling, factors and solves
+   need the group alone. Whoever wants bodies to be solved side by side calls `AbutBodySolve()` for all before asking what became of any.
 
 .seealso: `AbutBodySetUpAll()`, `AbutBodyGetSolved()`, `AbutMeshSetRanks()`
 @*/

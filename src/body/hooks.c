@@ -183,7 +183,7 @@ PetscErrorCode AbutBodyAddFoundation(AbutBody body, const char name[], PetscLogE
    Input Parameters:
 +  body     - the body
 .  name     - who brings it, for messages
-.  event    - logged while it is asked for; 0 for that of the assembly
+.  event    - logged while pairs integrate the gap with it; 0 for that of the assembly
 .  side     - number of the side
 .  function - how far it stands out at a point, length
 -  ctx      - handed to the function

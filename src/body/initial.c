@@ -44,18 +44,6 @@ static PetscErrorCode AbutBodyInitialStrain_Private(AbutBody body, const PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The hooks that bring them begin or end what is logged */
-static PetscErrorCode AbutBodyLogInitial_Private(AbutBody body, PetscBool begin)
-{
-  PetscFunctionBegin;
-  for (AbutHook h = body->hooks; h; h = h->next) {
-    if (h->type != ABUT_HOOK_STRAIN) continue;
-    if (begin) PetscCall(PetscLogEventBegin(h->event, body, 0, 0, 0));
-    else PetscCall(PetscLogEventEnd(h->event, body, 0, 0, 0));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 typedef struct {
   PetscQuadrature  rule;
   PetscInt         n;
@@ -142,7 +130,7 @@ PetscErrorCode AbutBodyInitialSetUp_Private(AbutBody body)
   PetscReal               f[2 * ABUT_CELL_NODES_MAX], energy = 0.;
 
   PetscFunctionBegin;
-  PetscCall(AbutBodyLogInitial_Private(body, PETSC_TRUE));
+  PetscCall(AbutBodyLogHooks_Private(body, ABUT_HOOK_STRAIN, -1, PETSC_TRUE));
   PetscCall(AbutMeshGetTopology(body->mesh, &t));
   PetscCall(VecDestroy(&body->initialload)); /* of another load factor */
   PetscCall(AbutBodyCreateVec(body, &body->initialload));
@@ -156,7 +144,7 @@ PetscErrorCode AbutBodyInitialSetUp_Private(AbutBody body)
   PetscCall(VecAssemblyEnd(body->initialload));
   PetscCallMPI(MPI_Allreduce(&energy, &body->initialenergy, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
   PetscCall(VecAXPY(body->load, 1., body->initialload));
-  PetscCall(AbutBodyLogInitial_Private(body, PETSC_FALSE));
+  PetscCall(AbutBodyLogHooks_Private(body, ABUT_HOOK_STRAIN, -1, PETSC_FALSE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -29,15 +29,20 @@ static PetscBool AbutNodeIsFixed_Private(AbutBody body, PetscInt before, PetscIn
   return (PetscBool)((u[0] || PetscAbsReal(normal[0]) < 1e-12) && (u[1] || PetscAbsReal(normal[1]) < 1e-12));
 }
 
+/* The outward unit normal of a boundary element from p to q, and its length */
+PetscReal AbutElementNormal_Private(const PetscReal p[2], const PetscReal q[2], PetscReal normal[2])
+{
+  const PetscReal length = PetscSqrtReal(PetscSqr(q[0] - p[0]) + PetscSqr(q[1] - p[1]));
+
+  normal[0] = (q[1] - p[1]) / length;
+  normal[1] = (p[0] - q[0]) / length;
+  return length;
+}
+
 static void AbutSideNormals_Private(AbutSide *s)
 {
-  for (PetscInt i = 0; i + 1 < s->n; i += s->order) {
-    const PetscReal *a = s->x + 2 * i, *b = s->x + 2 * (i + s->order), d[2] = {b[0] - a[0], b[1] - a[1]},
-                    h = PetscSqrtReal(d[0] * d[0] + d[1] * d[1]);
-
-    s->normal[2 * (i / s->order)]     = d[1] / h;
-    s->normal[2 * (i / s->order) + 1] = -d[0] / h;
-  }
+  for (PetscInt i = 0; i + 1 < s->n; i += s->order)
+    (void)AbutElementNormal_Private(s->x + 2 * i, s->x + 2 * (i + s->order), s->normal + 2 * (i / s->order));
   s->straight = PETSC_TRUE;
   for (PetscInt e = 1; e < (s->n - 1) / s->order; ++e)
     for (PetscInt d = 0; d < 2; ++d)

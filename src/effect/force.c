@@ -18,8 +18,6 @@
 .seealso: `AbutEffectSetType()`, `ABUTEFFECTGRAVITY`, `AbutBodyAddForce()`
 M*/
 
-#define ABUT_SAMPLES 32 /* in each direction */
-
 typedef struct {
   AbutExpression f[2];
 } AbutEffect_Force;
@@ -55,17 +53,12 @@ static PetscErrorCode AbutEffectSetFromOptions_Force(AbutEffect effect, AbutOpti
 static PetscErrorCode AbutEffectCheck_Force(AbutEffect effect, AbutBody body)
 {
   AbutEffect_Force *e;
-  AbutMesh          mesh;
-  PetscReal         lower[2], upper[2], f[2];
+  PetscReal         z[2], x[2], f[2];
 
   PetscFunctionBegin;
   PetscCall(AbutEffectGetData(effect, &e));
-  PetscCall(AbutBodyGetMesh(body, &mesh));
-  PetscCall(AbutMeshGetBox(mesh, lower, upper));
-  for (PetscInt i = 0; i < ABUT_SAMPLES * ABUT_SAMPLES; ++i) {
-    const PetscReal z[2] = {(i % ABUT_SAMPLES + 0.5) / ABUT_SAMPLES, (i / ABUT_SAMPLES + 0.5) / ABUT_SAMPLES};
-    const PetscReal x[2] = {lower[0] + z[0] * (upper[0] - lower[0]), lower[1] + z[1] * (upper[1] - lower[1])};
-
+  for (PetscInt i = 0; i < ABUT_EFFECT_SAMPLES; ++i) {
+    PetscCall(AbutEffectGetSample_Private(body, i, z, x));
     PetscCall(AbutForceForce_Private(x, f, e));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

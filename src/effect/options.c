@@ -1,3 +1,5 @@
+#include <abut/private/bodyimpl.h>
+#include <abut/private/sysimpl.h>
 #include <abut/private/effectimpl.h> /*I "abuteffect.h" I*/
 
 /* The keys of an effect, NAME_effect_..., and what types have in common */
@@ -5,36 +7,26 @@
 /* The names in "lower, upper", or all bodies where nothing is said */
 static PetscErrorCode AbutEffectFindBodies_Private(AbutEffect effect, const char text[], PetscInt nbodies, AbutBody bodies[])
 {
-  MPI_Comm    comm     = PetscObjectComm((PetscObject)effect);
-  const char *name     = ((PetscObject)effect)->name;
-  char        all[512] = "", copy[PETSC_MAX_PATH_LEN], *word, *rest = copy;
-  PetscBool  *used;
-  AbutBody   *found;
+  MPI_Comm    comm = PetscObjectComm((PetscObject)effect);
+  const char *name = ((PetscObject)effect)->name;
+  char        all[ABUT_LIST], copy[PETSC_MAX_PATH_LEN], *word, *rest = copy;
+  AbutBody   *found, one;
   PetscInt    n = 0;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < nbodies; ++i) {
-    PetscCall(PetscStrlcat(all, i ? ", " : "", sizeof(all)));
-    PetscCall(PetscStrlcat(all, ((PetscObject)bodies[i])->name, sizeof(all)));
-  }
-  PetscCall(PetscCalloc2(nbodies, &used, nbodies, &found));
+  PetscCall(PetscMalloc1(nbodies, &found));
   PetscCall(PetscStrncpy(copy, text, sizeof(copy)));
+  PetscCall(AbutBodyFind_Private(nbodies, bodies, "", &one, all, sizeof(all)));
   while ((word = strtok_r(NULL, ", ", &rest))) {
-    PetscInt  which = -1;
-    PetscBool match;
-
-    for (PetscInt i = 0; i < nbodies; ++i) {
-      PetscCall(PetscStrcasecmp(word, ((PetscObject)bodies[i])->name, &match));
-      if (match) which = i;
-    }
-    AbutCheckInput(which >= 0, comm, "%s_effect_bodies: the scene has no body \"%s\"; give some of: %s", name, word, all);
-    AbutCheckInput(!used[which], comm, "%s_effect_bodies: \"%s\" stands twice; once is enough", name, word);
-    used[which] = PETSC_TRUE;
-    found[n++]  = bodies[which];
+    PetscCall(AbutBodyFind_Private(nbodies, bodies, word, &one, all, sizeof(all)));
+    AbutCheckInput(one, comm, "%s_effect_bodies: the scene has no body \"%s\"; give some of: %s", name, word, all);
+    for (PetscInt i = 0; i < n; ++i)
+      AbutCheckInput(found[i] != one, comm, "%s_effect_bodies: \"%s\" stands twice; once is enough", name, word);
+    found[n++] = one;
   }
   AbutCheckInput(n, comm, "%s_effect_bodies: \"%s\" names no body; give some of: %s", name, text, all);
   PetscCall(AbutEffectSetBodies(effect, n, found));
-  PetscCall(PetscFree2(used, found));
+  PetscCall(PetscFree(found));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -187,5 +179,21 @@ PetscErrorCode AbutEffectCheckSide(AbutEffect effect, AbutBody body, PetscInt si
   AbutCheckInput(is || !contact, PetscObjectComm((PetscObject)effect),
                  "%s_effect_side: %s of %s is in no pair; give a side in contact, or leave the effect out", ((PetscObject)effect)->name,
                  where, ((PetscObject)body)->name);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Point i of ABUT_EFFECT_SAMPLES in the box of a body: z in the unit square, and x; -3, -2, -1 are its corners (0,0), (1,0), (0,1) */
+PetscErrorCode AbutEffectGetSample_Private(AbutBody body, PetscInt i, PetscReal z[2], PetscReal x[2])
+{
+  const PetscInt n = ABUT_EFFECT_LINE;
+  AbutMesh       mesh;
+  PetscReal      lower[2], upper[2];
+
+  PetscFunctionBegin;
+  PetscCall(AbutBodyGetMesh(body, &mesh));
+  PetscCall(AbutMeshGetBox(mesh, lower, upper));
+  z[0] = i < 0 ? i == -2 : (i % n + 0.5) / n;
+  z[1] = i < 0 ? i == -1 : (i / n + 0.5) / n;
+  for (PetscInt d = 0; d < 2; ++d) x[d] = lower[d] + z[d] * (upper[d] - lower[d]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

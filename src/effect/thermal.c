@@ -56,27 +56,19 @@ static PetscErrorCode AbutEffectSetFromOptions_Thermal(AbutEffect effect, AbutOp
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-#define ABUT_SAMPLES 32 /* in each direction */
-
 /* Is the temperature linear in the box of a body? A fit through three corners, looked at in many points: each is evaluated on all ranks,
    so that a temperature that is no finite number ends the run on all of them. */
 static PetscErrorCode AbutThermalIsLinear_Private(AbutEffect_Thermal *e, AbutBody body, PetscBool *linear)
 {
-  AbutMesh  mesh;
-  PetscReal lower[2], upper[2], T[3], most = 0., off = 0.;
+  PetscReal T[3], most = 0., off = 0.;
 
   PetscFunctionBegin;
-  PetscCall(AbutBodyGetMesh(body, &mesh));
-  PetscCall(AbutMeshGetBox(mesh, lower, upper));
-  for (PetscInt i = 0; i < ABUT_SAMPLES * ABUT_SAMPLES + 3; ++i) {
-    const PetscInt  k    = i - 3;
-    const PetscReal z[2] = {k < 0 ? i == 1 : (k % ABUT_SAMPLES + 0.5) / ABUT_SAMPLES,
-                            k < 0 ? i == 2 : (k / ABUT_SAMPLES + 0.5) / ABUT_SAMPLES};
-    const PetscReal x[2] = {lower[0] + z[0] * (upper[0] - lower[0]), lower[1] + z[1] * (upper[1] - lower[1])};
-    PetscReal       here;
+  for (PetscInt i = -3; i < ABUT_EFFECT_SAMPLES; ++i) {
+    PetscReal z[2], x[2], here;
 
+    PetscCall(AbutEffectGetSample_Private(body, i, z, x));
     PetscCall(AbutExpressionEvaluate(e->temperature, x, &here));
-    if (k < 0) T[i] = here;
+    if (i < 0) T[i + 3] = here;
     else off = PetscMax(off, PetscAbsReal(here - T[0] - z[0] * (T[1] - T[0]) - z[1] * (T[2] - T[0])));
     most = PetscMax(most, PetscAbsReal(here));
   }

@@ -1,4 +1,5 @@
 #include <abut/private/loopimpl.h> /*I "abutloop.h" I*/
+#include <abut/private/sysimpl.h>
 
 /* Is every rigid motion that the prescribed displacements leave free resisted by contact? Contact resists a motion of the bodies by its
    normal jump, at the points of AbutPairGetSharedPoints(); where it has friction, by the tangential jump, too. */
@@ -181,7 +182,7 @@ static PetscErrorCode AbutInterfaceComplain_Private(AbutInterface f, const AbutJ
 {
   AbutBody    body = f->body[j->body[which]];
   const char *name, *other, *side;
-  char        with[256] = "";
+  char        others[ABUT_LIST] = "", with[ABUT_LIST + 32] = "";
   PetscReal   u[2][2], scale;
   PetscBool   turn;
   PetscInt    d, component = 0, last = j->body[which];
@@ -194,10 +195,9 @@ static PetscErrorCode AbutInterfaceComplain_Private(AbutInterface f, const AbutJ
     if (!used[c] || j->body[c] == last || j->body[c] == j->body[which]) continue;
     last = j->body[c];
     PetscCall(AbutBodyGetName(f->body[last], &other));
-    PetscCall(PetscStrlcat(with, with[0] ? ", " : turn ? ", and " : ", nor ", sizeof(with)));
-    PetscCall(PetscStrlcat(with, other, sizeof(with)));
+    PetscCall(AbutListAddItem_Private(others, sizeof(others), other));
   }
-  if (with[0]) PetscCall(PetscStrlcat(with, " with it", sizeof(with)));
+  if (others[0]) PetscCall(PetscSNPrintf(with, sizeof(with), ", %s %s with it", turn ? "and" : "nor", others));
   PetscCall(AbutBodyFindSupport_Private(body, turn, d, &side, &component));
   if (turn)
     PetscCall(PetscSNPrintf(text, len,
@@ -232,7 +232,7 @@ PetscErrorCode AbutInterfaceCheck(AbutInterface iface)
   AbutJumps  j;
   PetscInt   which;
   PetscBool *used;
-  char       text[1024] = "";
+  char       text[2 * ABUT_LIST] = "";
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(iface, ABUTINTERFACE_CLASSID, 1);

@@ -1,3 +1,4 @@
+#include <abut/private/pairimpl.h>
 #include <abut/private/loopimpl.h> /*I "abutloop.h" I*/
 
 /* Traces and pressures across a change of mesh: kept with the coordinates of their nodes, and evaluated at the new ones */
@@ -101,18 +102,10 @@ PetscErrorCode AbutInterfaceForgetTrace(AbutInterface iface)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Both node lists run along the same side in the same direction: one walk serves all nodes */
 static void AbutOldTraceValue_Private(const AbutOldTrace *old, const PetscReal x[2], PetscInt *element, PetscReal value[])
 {
-  PetscReal t;
+  const PetscReal t = AbutPairWalkTo_Private(old->n, old->x, x, element);
 
-  for (;; ++*element) {
-    const PetscReal *a = old->x + 2 * *element, d[2] = {a[2] - a[0], a[3] - a[1]};
-
-    t = ((x[0] - a[0]) * d[0] + (x[1] - a[1]) * d[1]) / (d[0] * d[0] + d[1] * d[1]);
-    if (t <= 1. || *element + 2 >= old->n) break;
-  }
-  t = PetscMin(1., PetscMax(0., t));
   for (PetscInt d = 0; d < old->each; ++d)
     value[d] = (1. - t) * old->value[old->each * *element + d] + t * old->value[old->each * (*element + 1) + d];
 }

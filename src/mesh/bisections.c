@@ -1,5 +1,5 @@
 #include "first.h"
-#include "bisections.h"
+#include "triangles.h"
 
 /* Triangles of a mesh from a file: labels of the DMPLEX say on which side of the body a side of a cell lies, and how often a first cell was
    bisected to the present one. New vertices on a curved side move to its curve, in the DMPLEX itself: it has the mesh as it is. */

@@ -180,6 +180,30 @@ PetscErrorCode AbutFirstCurvesFromOptions_Private(AbutMesh mesh)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether a point of a first cell is beyond a curve that bends into the body: the cells of finer meshes leave such a point out */
+PetscErrorCode AbutFirstBeyondCurve_Private(AbutFirst first, const PetscReal x[2], PetscBool *beyond)
+{
+  const PetscReal tiny = 1e-9; /* of the length of the segment, as for cells */
+
+  PetscFunctionBegin;
+  *beyond = PETSC_FALSE;
+  for (PetscInt s = 0; s < first->nsides && !*beyond; ++s)
+    for (PetscInt k = first->segments[s]; k < first->segments[s + 1] && first->curve[s] && !*beyond; ++k) {
+      const PetscReal *a = first->segment + 4 * k, d[2] = {a[2] - a[0], a[3] - a[1]}, length2 = d[0] * d[0] + d[1] * d[1];
+      const PetscReal  t    = (d[0] * (x[0] - a[0]) + d[1] * (x[1] - a[1])) / length2;
+      PetscReal        y[2] = {a[0] + t * d[0], a[1] + t * d[1]}, foot[2] = {x[0], x[1]}, rise, height; /* to the left, times the length */
+
+      if (t < 0. || t > 1.) continue;
+      height = d[0] * (x[1] - a[1]) - d[1] * (x[0] - a[0]);
+      PetscCall(AbutFirstMoveToCurve_Private(first, s, y));
+      rise = d[0] * (y[1] - a[1]) - d[1] * (y[0] - a[0]);
+      if (height > 2. * rise) continue; /* nearly above each other, and further away the nearest point may be that of another segment */
+      PetscCall(AbutFirstMoveToCurve_Private(first, s, foot));
+      *beyond = (PetscBool)(d[0] * (x[1] - foot[1]) - d[1] * (x[0] - foot[0]) < -tiny * length2);
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
    AbutMeshGetCurvePoint - The point of the curve of a side that is nearest to a point
 

@@ -111,8 +111,9 @@ PetscErrorCode AbutFirstDescribe_Private(AbutMesh mesh, char text[], size_t len)
 
    Notes:
    The cells are all triangles or all quads, with nodes at their corners. The physical curves of the file, with their names or else their
-   numbers, are the sides of the body; every line of the boundary belongs to one. Lengths are in the unit of the scene. Clockwise cells are
-   turned round, and nodes of no cell do not count. Whatever else is wrong with the file is bad input: one line, on all ranks.
+   numbers, are the sides of the body; every line of the boundary belongs to one. No name may be the number of
+   another group of its kind that has none. Lengths are in the unit of the scene. Clockwise cells are turned round, and nodes of no cell do
+   not count. Whatever else is wrong with the file is bad input: one line, on all ranks.
 
    The box of the mesh, `AbutMeshGetBox()`, is then the smallest around all vertices.
 
@@ -269,9 +270,13 @@ PetscErrorCode AbutMeshIsSideStraight(AbutMesh mesh, PetscInt side, PetscBool *s
 -  x    - [2] the point
 
    Output Parameter:
-.  covers - `PETSC_TRUE` if it lies in the box, or in a cell of the file, or on its border; for a file with curved sides always
+.  covers - `PETSC_TRUE` if it lies in the box, or in a cell of the file and inside all curves, or on the border of those
 
    Level: developer
+
+   Note:
+   Such a point lies in a cell of every later mesh. One between a cell of the file and a curve that bends outwards may not, and is not
+   covered.
 
 .seealso: `AbutMeshGetBox()`, `AbutMeshSetFile()`
 @*/
@@ -280,8 +285,7 @@ PetscErrorCode AbutMeshCovers(AbutMesh mesh, const PetscReal x[2], PetscBool *co
   const AbutFirst f = mesh->first;
 
   PetscFunctionBegin;
-  *covers = f ? f->curved
-              : (PetscBool)(x[0] >= mesh->lower[0] && x[0] <= mesh->upper[0] && x[1] >= mesh->lower[1] && x[1] <= mesh->upper[1]);
+  *covers = (PetscBool)(!f && x[0] >= mesh->lower[0] && x[0] <= mesh->upper[0] && x[1] >= mesh->lower[1] && x[1] <= mesh->upper[1]);
   for (PetscInt c = 0; f && c < f->ncells && !*covers; ++c) {
     *covers = PETSC_TRUE;
     for (PetscInt k = 0; k < f->corners && *covers; ++k) {
@@ -290,6 +294,12 @@ PetscErrorCode AbutMeshCovers(AbutMesh mesh, const PetscReal x[2], PetscBool *co
 
       *covers = (PetscBool)(d[0] * (x[1] - a[1]) - d[1] * (x[0] - a[0]) >= -1e-9 * (d[0] * d[0] + d[1] * d[1]));
     }
+  }
+  if (f && *covers) {
+    PetscBool beyond;
+
+    PetscCall(AbutFirstBeyondCurve_Private(f, x, &beyond));
+    *covers = (PetscBool)!beyond;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <abut/private/sysimpl.h>
 #include <abut/private/meshimpl.h>
 
 /* What a gmsh file says, on one rank; vertices are numbered from 0 in the order of the file */
@@ -15,7 +16,7 @@ typedef struct {
 
 /* What is wrong with an input that only one rank reads: a text, empty if all is well */
 typedef struct {
-  char text[512];
+  char text[ABUT_LIST + 512];
 } AbutFault;
 
 PETSC_INTERN PetscErrorCode AbutGmshRead_Private(const char[], const char[], AbutGmsh *, char[], AbutFault *);
@@ -48,6 +49,7 @@ PETSC_INTERN PetscErrorCode AbutFirstOutline_Private(const AbutGmsh *, AbutFirst
 PETSC_INTERN PetscErrorCode AbutFirstCurvesFromOptions_Private(AbutMesh);
 PETSC_INTERN PetscErrorCode AbutCurveDestroy_Private(AbutCurve *);
 PETSC_INTERN PetscErrorCode AbutFirstMoveToCurve_Private(AbutFirst, PetscInt, PetscReal[2]);
+PETSC_INTERN PetscErrorCode AbutFirstBeyondCurve_Private(AbutFirst, const PetscReal[2], PetscBool *);
 
 #define ABUT_CURVE_AREA 0.05 /* what must be left of a cell whose vertices move to a curve */
 PETSC_INTERN PetscErrorCode AbutFirstCheckMoved_Private(AbutMesh, PetscInt);

@@ -31,12 +31,31 @@ static PetscInt64 AbutGmshFindRegion_Private(const AbutGmshFile *f, const char r
   return -1;
 }
 
-/* Two physical groups of one kind with one name */
+/* Whether the file has elements of a physical group of a kind whose number is this text, and no name for it */
+static PetscErrorCode AbutGmshIsNumber_Private(const AbutGmshFile *f, PetscInt64 dim, const char text[], PetscBool *is)
+{
+  const AbutGmshElements *lists[2] = {dim == 1 ? &f->lines : &f->triangles, dim == 1 ? NULL : &f->quads};
+  const PetscInt64        number   = strtoll(text, NULL, 10);
+  char                    digits[32];
+
+  PetscFunctionBegin;
+  *is = PETSC_FALSE;
+  PetscCall(PetscSNPrintf(digits, sizeof(digits), "%lld", (long long)number));
+  if (dim < 1 || dim > 2 || number <= 0 || strcmp(digits, text)) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt k = 0; k < 2 && lists[k]; ++k)
+    for (size_t i = 0; i < lists[k]->n; ++i)
+      if (lists[k]->element[i].physical == number) *is = PETSC_TRUE;
+  for (size_t i = 0; i < f->nnames; ++i)
+    if (f->name[i].dim == dim && f->name[i].tag == number) *is = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Two physical groups of one kind with one name, or with a name that is the number by which another is known */
 static PetscErrorCode AbutGmshCheckNames_Private(const AbutGmshFile *f, AbutFault *fault)
 {
   PetscFunctionBegin;
   for (size_t i = 0; i < f->nnames; ++i) {
-    PetscBool same = PETSC_FALSE;
+    PetscBool same = PETSC_FALSE, number;
 
     if (f->name[i].dim == 1 && strlen(f->name[i].text) >= ABUT_SIDE_NAME_MAX)
       PetscCall(PetscSNPrintf(fault->text, sizeof(fault->text), "the name \"%.70s...\" of a physical curve is longer than %d letters",
@@ -46,6 +65,11 @@ static PetscErrorCode AbutGmshCheckNames_Private(const AbutGmshFile *f, AbutFaul
     if (same)
       PetscCall(PetscSNPrintf(fault->text, sizeof(fault->text),
                               "two physical %s have the name \"%s\"; give each one of its own, without case",
+                              f->name[i].dim == 1 ? "curves" : "surfaces", f->name[i].text));
+    PetscCall(AbutGmshIsNumber_Private(f, f->name[i].dim, f->name[i].text, &number));
+    if (number)
+      PetscCall(PetscSNPrintf(fault->text, sizeof(fault->text),
+                              "two physical %s are \"%s\": one has this name, another this number and no name; give the other a name",
                               f->name[i].dim == 1 ? "curves" : "surfaces", f->name[i].text));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -67,14 +91,12 @@ static PetscErrorCode AbutGmshCells_Private(AbutGmshFile *f, const char region[]
     n[k] = (PetscInt)(lists[k]->n = kept);
   }
   if (physical < 0) {
-    PetscCall(PetscSNPrintf(fault->text, sizeof(fault->text), "there is no physical surface \"%s\"; the file has", region));
-    for (size_t i = 0, has = 0; i <= f->nnames; ++i) {
-      const size_t at = strlen(fault->text);
+    char names[ABUT_LIST] = "";
 
-      if (i == f->nnames && !has) PetscCall(PetscSNPrintf(fault->text + at, sizeof(fault->text) - at, " none with a name"));
-      if (i == f->nnames || f->name[i].dim != 2) continue;
-      PetscCall(PetscSNPrintf(fault->text + at, sizeof(fault->text) - at, "%s %s", has++ ? "," : "", f->name[i].text));
-    }
+    for (size_t i = 0; i < f->nnames; ++i)
+      if (f->name[i].dim == 2) PetscCall(AbutListAddItem_Private(names, sizeof(names), f->name[i].text));
+    PetscCall(PetscSNPrintf(fault->text, sizeof(fault->text), "there is no physical surface \"%s\"; the file has %s", region,
+                            names[0] ? names : "none with a name"));
   } else if (!n[0] && !n[1]) PetscCall(PetscStrncpy(fault->text, "there are no triangles and no quads", sizeof(fault->text)));
   else if (n[0] && n[1])
     PetscCall(PetscSNPrintf(fault->text, sizeof(fault->text),
@@ -100,6 +122,23 @@ static PetscErrorCode AbutGmshCells_Private(AbutGmshFile *f, const char region[]
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The nodes that are corners of cells lie in a plane along x and y, but for what the numbers of a mesher that turned it lost */
+static PetscErrorCode AbutGmshCheckPlane_Private(const AbutGmshFile *f, const PetscInt vertex[], PetscInt first, AbutFault *fault)
+{
+  const PetscReal tiny = 1e-9, *x = f->node[first].x; /* of the size of the mesh */
+  PetscReal       size = 0.;
+
+  PetscFunctionBegin;
+  for (size_t i = 0; i < f->nnodes; ++i)
+    for (PetscInt d = 0; d < 2 && vertex[i] >= 0; ++d) size = PetscMax(size, PetscAbsReal(f->node[i].x[d] - x[d]));
+  for (size_t i = 0; i < f->nnodes && !fault->text[0]; ++i)
+    if (vertex[i] >= 0 && PetscAbsReal(f->node[i].x[2] - x[2]) > tiny * size)
+      PetscCall(PetscSNPrintf(fault->text, sizeof(fault->text),
+                              "node %lld lies at z = %g, others at %g; give a mesh in the plane of x and y", (long long)f->node[i].number,
+                              (double)f->node[i].x[2], (double)x[2]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Keeps the nodes that are corners of cells, and lines between two of them */
 static PetscErrorCode AbutGmshVertices_Private(const AbutGmshFile *f, AbutGmsh *out, AbutFault *fault)
 {
@@ -109,15 +148,12 @@ static PetscErrorCode AbutGmshVertices_Private(const AbutGmshFile *f, AbutGmsh *
   PetscCall(PetscMalloc1(f->nnodes, &vertex));
   for (size_t i = 0; i < f->nnodes; ++i) vertex[i] = -1;
   for (PetscInt k = 0; k < out->corners * out->ncells; ++k) vertex[out->cell[k]] = 0;
+  PetscCall(AbutGmshCheckPlane_Private(f, vertex, out->cell[0], fault));
   PetscCall(PetscMalloc1(2 * f->nnodes, &out->x));
   for (size_t i = 0; i < f->nnodes; ++i) {
     if (vertex[i] < 0) continue;
     vertex[i] = out->nvertices++;
     for (PetscInt d = 0; d < 2; ++d) out->x[2 * vertex[i] + d] = f->node[i].x[d];
-    if (f->node[i].x[2] != f->node[out->cell[0]].x[2] && !fault->text[0])
-      PetscCall(PetscSNPrintf(fault->text, sizeof(fault->text),
-                              "node %lld lies at z = %g, others at %g; give a mesh in the plane of x and y", (long long)f->node[i].number,
-                              (double)f->node[i].x[2], (double)f->node[out->cell[0]].x[2]));
   }
   PetscCall(PetscMalloc1(3 * f->lines.n, &out->line));
   for (size_t i = 0; i < f->lines.n; ++i) {

@@ -1,4 +1,4 @@
-#include <abut/private/meshimpl.h> /*I "abutmesh.h" I*/
+#include "first.h" /*I "abutmesh.h" I*/
 
 /* Diameters of the circles around and inside a triangle */
 static void AbutTriangleDiameters_Private(const PetscReal a[2], const PetscReal b[2], const PetscReal c[2], PetscReal *around,
@@ -84,5 +84,55 @@ PetscErrorCode AbutMeshGetMeasures(AbutMesh mesh, AbutMeshMeasures *m)
   m->ratio      = high[1] / high[0];
   m->lemma      = (PetscBool)(onboundary >= high[0] * (1. - 1e-12));
   m->level_max  = (PetscInt)high[3];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutMeshGetCellCount - Cells of the whole mesh
+
+   Collective
+
+   Input Parameter:
+.  mesh - the mesh
+
+   Output Parameter:
+.  ncells - over all ranks
+
+   Level: beginner
+
+.seealso: `AbutMeshGetTopology()`
+@*/
+PetscErrorCode AbutMeshGetCellCount(AbutMesh mesh, PetscInt *ncells)
+{
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Allreduce(&mesh->topology.ncells, ncells, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)mesh)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutMeshView - Prints a mesh: shape, box, cells, levels
+
+   Collective
+
+   Input Parameters:
++  mesh   - the mesh
+-  viewer - the viewer
+
+   Level: intermediate
+
+.seealso: `AbutMeshCreate()`
+@*/
+PetscErrorCode AbutMeshView(AbutMesh mesh, PetscViewer viewer)
+{
+  AbutMeshMeasures m;
+  PetscInt         ncells;
+
+  PetscFunctionBegin;
+  PetscCall(AbutMeshGetCellCount(mesh, &ncells));
+  PetscCall(AbutMeshGetMeasures(mesh, &m));
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "mesh: %s of order %" PetscInt_FMT ", %" PetscInt_FMT " cells, %" PetscInt_FMT
+                                   " nodes with unknowns, levels up to %" PetscInt_FMT ", smallest side %g\n",
+                                   AbutShapeNames[mesh->shape], mesh->order, ncells, mesh->topology.nglobal, m.level_max, (double)m.h_min));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,4 +1,4 @@
-#include <abut/private/meshimpl.h>
+#include "triangles.h"
 
 /* Triangles that are merged. Bisection keeps no tree; but it puts every vertex in the middle of a side, so the vertices that are to stay
    tell how to make the mesh again from the first one: bisect every side in whose middle one of them lies, until there is none. */

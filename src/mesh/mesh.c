@@ -327,56 +327,6 @@ PetscErrorCode AbutMeshGetBox(AbutMesh mesh, PetscReal lower[2], PetscReal upper
 }
 
 /*@
-   AbutMeshGetCellCount - Cells of the whole mesh
-
-   Collective
-
-   Input Parameter:
-.  mesh - the mesh
-
-   Output Parameter:
-.  ncells - over all ranks
-
-   Level: beginner
-
-.seealso: `AbutMeshGetTopology()`
-@*/
-PetscErrorCode AbutMeshGetCellCount(AbutMesh mesh, PetscInt *ncells)
-{
-  PetscFunctionBegin;
-  PetscCallMPI(MPI_Allreduce(&mesh->topology.ncells, ncells, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)mesh)));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-   AbutMeshView - Prints a mesh: shape, box, cells, levels
-
-   Collective
-
-   Input Parameters:
-+  mesh   - the mesh
--  viewer - the viewer
-
-   Level: intermediate
-
-.seealso: `AbutMeshCreate()`
-@*/
-PetscErrorCode AbutMeshView(AbutMesh mesh, PetscViewer viewer)
-{
-  AbutMeshMeasures m;
-  PetscInt         ncells;
-
-  PetscFunctionBegin;
-  PetscCall(AbutMeshGetCellCount(mesh, &ncells));
-  PetscCall(AbutMeshGetMeasures(mesh, &m));
-  PetscCall(PetscViewerASCIIPrintf(viewer,
-                                   "mesh: %s of order %" PetscInt_FMT ", %" PetscInt_FMT " cells, %" PetscInt_FMT
-                                   " nodes with unknowns, levels up to %" PetscInt_FMT ", smallest side %g\n",
-                                   AbutShapeNames[mesh->shape], mesh->order, ncells, mesh->topology.nglobal, m.level_max, (double)m.h_min));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
    AbutMeshDestroy - Frees a mesh
 
    Collective

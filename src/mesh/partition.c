@@ -24,8 +24,8 @@ PetscInt64 AbutMeshShare_Private(AbutMesh mesh, PetscMPIInt size, PetscInt64 n, 
    Level: developer
 
    Note:
-   The mesh stays an object of all ranks of its communicator, and the others have no cells of it. If it moves, every array got from it before is
-   no longer valid.
+   The mesh stays an object of all ranks of its communicator, and the others have no cells of it. If it moves, every array got from it
+   before is no longer valid.
 
 .seealso: `AbutMeshGetRanks()`, `AbutBodySetRanks()`
 @*/

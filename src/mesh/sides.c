@@ -119,7 +119,7 @@ PetscErrorCode AbutMeshGetSideName(AbutMesh mesh, PetscInt side, const char *nam
 PetscErrorCode AbutMeshFindSide(AbutMesh mesh, const char key[], const char name[], PetscInt *side)
 {
   const char *have;
-  char        all[512] = "";
+  char        all[ABUT_LIST] = "";
   PetscInt    n;
   PetscBool   match;
 
@@ -130,8 +130,7 @@ PetscErrorCode AbutMeshFindSide(AbutMesh mesh, const char key[], const char name
     PetscCall(PetscStrcasecmp(name, have, &match));
     *side = s;
     if (match) PetscFunctionReturn(PETSC_SUCCESS);
-    PetscCall(PetscStrlcat(all, s ? ", " : "", sizeof(all)));
-    PetscCall(PetscStrlcat(all, have, sizeof(all)));
+    PetscCall(AbutListAddItem_Private(all, sizeof(all), have));
   }
   SETERRQ(PetscObjectComm((PetscObject)mesh), PETSC_ERR_USER_INPUT, "%s: there is no side \"%s\"; %s has %s", key, name,
           mesh->first ? mesh->first->path : "a box", all);

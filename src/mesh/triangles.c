@@ -1,4 +1,4 @@
-#include "bisections.h"
+#include "triangles.h"
 #include "first.h"
 
 /* Triangles: DMPlex, refined by bisection (DMPLEXREFINESBR), which keeps the mesh conforming and its angles bounded */

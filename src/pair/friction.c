@@ -218,6 +218,21 @@ PetscErrorCode AbutPairKeepSlip(AbutPair pair, const PetscReal u1[], const Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Where a point lies between kept nodes x[2*n] along a side: in [0,1] of the element from node *element on, which only goes forward, for
+   node lists that run in the same direction are walked once */
+PetscReal AbutPairWalkTo_Private(PetscInt n, const PetscReal x[], const PetscReal at[2], PetscInt *element)
+{
+  PetscReal t;
+
+  for (;; ++*element) {
+    const PetscReal *a = x + 2 * *element, d[2] = {a[2] - a[0], a[3] - a[1]};
+
+    t = ((at[0] - a[0]) * d[0] + (at[1] - a[1]) * d[1]) / (d[0] * d[0] + d[1] * d[1]);
+    if (t <= 1. || *element + 2 >= n) break;
+  }
+  return PetscMin(1., PetscMax(0., t));
+}
+
 /* The kept slips at the nodes of the present meshes */
 PetscErrorCode AbutPairFrictionSetUp_Private(AbutPair pair)
 {
@@ -229,17 +244,9 @@ PetscErrorCode AbutPairFrictionSetUp_Private(AbutPair pair)
   PetscCall(PetscFree(friction->reference));
   PetscCall(PetscCalloc1(side->n, &friction->reference));
   for (PetscInt i = 0; friction->n > 1 && i < side->n; ++i) {
-    const PetscInt   node = pair->which ? side->n - 1 - i : i;
-    const PetscReal *x    = side->x + 2 * node;
-    PetscReal        t;
+    const PetscInt  node = pair->which ? side->n - 1 - i : i;
+    const PetscReal t    = AbutPairWalkTo_Private(friction->n, friction->x, side->x + 2 * node, &e);
 
-    for (;; ++e) {
-      const PetscReal *a = friction->x + 2 * e, d[2] = {a[2] - a[0], a[3] - a[1]};
-
-      t = ((x[0] - a[0]) * d[0] + (x[1] - a[1]) * d[1]) / (d[0] * d[0] + d[1] * d[1]);
-      if (t <= 1. || e + 2 >= friction->n) break;
-    }
-    t                         = PetscMin(1., PetscMax(0., t));
     friction->reference[node] = (1. - t) * friction->kept[e] + t * friction->kept[e + 1];
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,3 +1,5 @@
+#include <abut/private/bodyimpl.h>
+#include <abut/private/sysimpl.h>
 #include <abut/private/pairimpl.h> /*I "abutpair.h" I*/
 
 /* The keys of a pair */
@@ -21,8 +23,7 @@ static PetscErrorCode AbutPairSplit_Private(AbutPair pair, const char key[], con
 
 static PetscErrorCode AbutPairFindBodies_Private(AbutPair pair, const char text[], PetscInt nbodies, AbutBody bodies[])
 {
-  char      names[2][128], all[512] = "";
-  PetscBool match;
+  char names[2][128], all[ABUT_LIST] = "";
 
   PetscFunctionBegin;
   if (strchr(text, ',')) PetscCall(AbutPairSplit_Private(pair, "bodies", text, names[0], names[1], sizeof(names[0])));
@@ -30,17 +31,9 @@ static PetscErrorCode AbutPairFindBodies_Private(AbutPair pair, const char text[
     PetscCall(PetscStrncpy(names[0], text, sizeof(names[0])));
     names[1][0] = 0;
   }
-  for (PetscInt i = 0; i < nbodies; ++i) {
-    PetscCall(PetscStrlcat(all, i ? ", " : "", sizeof(all)));
-    PetscCall(PetscStrlcat(all, ((PetscObject)bodies[i])->name, sizeof(all)));
-  }
   pair->body[1] = NULL;
   for (PetscInt s = 0; s < 2 && names[s][0]; ++s) {
-    pair->body[s] = NULL;
-    for (PetscInt i = 0; i < nbodies; ++i) {
-      PetscCall(PetscStrcasecmp(names[s], ((PetscObject)bodies[i])->name, &match));
-      if (match) pair->body[s] = bodies[i];
-    }
+    PetscCall(AbutBodyFind_Private(nbodies, bodies, names[s], &pair->body[s], all, sizeof(all)));
     AbutCheckInput(pair->body[s], PetscObjectComm((PetscObject)pair), "%s_pair_bodies: the scene has no body \"%s\"; give two of: %s",
                    ((PetscObject)pair)->name, names[s], all);
   }

@@ -1,3 +1,4 @@
+#include <abut/private/bodyimpl.h>
 #include <abut/private/pairimpl.h> /*I "abutpair.h" I*/
 
 PetscClassId ABUTPAIR_CLASSID;
@@ -57,6 +58,15 @@ PetscErrorCode AbutPairCreate(MPI_Comm comm, const char name[], AbutPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What sides stand out is asked for in every point while the gap is integrated */
+static PetscErrorCode AbutPairLogOffsets_Private(AbutPair pair, PetscBool begin)
+{
+  PetscFunctionBegin;
+  for (PetscInt s = 0; s < 2 && pair->body[s]; ++s)
+    PetscCall(AbutBodyLogHooks_Private(pair->body[s], ABUT_HOOK_OFFSET, pair->side[s], begin));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
    AbutPairSetUp - Makes the common refinement and the dual-mortar weights; after a body's mesh has adapted, makes them anew
 
@@ -92,7 +102,9 @@ PetscErrorCode AbutPairSetUp(AbutPair pair)
     PetscCall(AbutBodyGetSide(pair->body[s], pair->side[s], &pair->nodes[s]));
     pair->n[s] = pair->nodes[s]->n;
   }
+  PetscCall(AbutPairLogOffsets_Private(pair, PETSC_TRUE));
   PetscCall(AbutPairMortar_Private(pair));
+  PetscCall(AbutPairLogOffsets_Private(pair, PETSC_FALSE));
   PetscCall(PetscLogEventEnd(pair->event, pair, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

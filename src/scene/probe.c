@@ -1,6 +1,6 @@
 #include <abut/private/sceneimpl.h>
 
-/* Keys of every probe: NAME_probe_body, NAME_probe_point; the point must lie in the body's box */
+/* Keys of every probe: NAME_probe_body, NAME_probe_point; the point must lie in the body */
 PetscErrorCode AbutSceneProbesFromOptions_Private(AbutScene scene, PetscInt n, char *names[])
 {
   MPI_Comm comm = PetscObjectComm((PetscObject)scene);
@@ -28,8 +28,9 @@ PetscErrorCode AbutSceneProbesFromOptions_Private(AbutScene scene, PetscInt n, c
     PetscCall(AbutMeshGetBox(mesh, lower, upper));
     PetscCall(AbutMeshGetFile(mesh, &file));
     PetscCall(AbutMeshCovers(mesh, probe->x, &inside));
-    AbutCheckInput(inside || !file, comm, "%s_probe_point: (%g, %g) lies outside \"%s\"; give a point of the cells of %s", names[i],
-                   (double)probe->x[0], (double)probe->x[1], body, file);
+    AbutCheckInput(inside || !file, comm,
+                   "%s_probe_point: (%g, %g) lies outside \"%s\"; give a point in the cells of %s and inside the curves of its sides",
+                   names[i], (double)probe->x[0], (double)probe->x[1], body, file);
     AbutCheckInput(file || (probe->x[0] >= lower[0] && probe->x[0] <= upper[0] && probe->x[1] >= lower[1] && probe->x[1] <= upper[1]), comm,
                    "%s_probe_point: (%g, %g) lies outside \"%s\"; give a point of its box [%g,%g]x[%g,%g]", names[i], (double)probe->x[0],
                    (double)probe->x[1], body, (double)lower[0], (double)upper[0], (double)lower[1], (double)upper[1]);

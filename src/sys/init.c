@@ -15,7 +15,7 @@ static void AbutOneLine_Private(const char mess[], size_t len, char said[])
 static PetscErrorCode AbutErrorHandler_Private(MPI_Comm comm, int line, const char *fun, const char *file, PetscErrorCode n,
                                                PetscErrorType p, const char *mess, void *ctx)
 {
-  char        said[4 * ABUT_MESSAGE];
+  char        said[ABUT_MESSAGE];
   PetscMPIInt rank = 0;
 
   if (n != PETSC_ERR_USER_INPUT && n != PETSC_ERR_FILE_WRITE) return PetscTraceBackErrorHandler(comm, line, fun, file, n, p, mess, ctx);

@@ -211,7 +211,7 @@ PetscErrorCode AbutOptionsInt(AbutOptionItems PetscOptionsObject, const char opt
 PetscErrorCode AbutOptionsEnum(AbutOptionItems PetscOptionsObject, const char opt[], const char text[], const char *const names[],
                                PetscInt *value, PetscBool *set)
 {
-  char      given[256] = "", key[256], all[512] = "";
+  char      given[256] = "", key[256], all[ABUT_LIST] = "";
   PetscBool flg, match;
 
   PetscFunctionBegin;
@@ -227,8 +227,7 @@ PetscErrorCode AbutOptionsEnum(AbutOptionItems PetscOptionsObject, const char op
       PetscFunctionReturn(PETSC_SUCCESS);
     }
     if (!names[i][0]) continue; /* the key alone */
-    PetscCall(PetscStrlcat(all, i ? ", " : "", sizeof(all)));
-    PetscCall(PetscStrlcat(all, names[i], sizeof(all)));
+    PetscCall(AbutListAddItem_Private(all, sizeof(all), names[i]));
   }
   SETERRQ(PetscOptionsObject->comm, PETSC_ERR_USER_INPUT, "%s: there is no \"%s\"; give one of: %s", key, given, all);
 }
@@ -294,7 +293,7 @@ static PetscBool AbutOptionsIsLate_Private(const char name[])
 PetscErrorCode AbutOptionsCheckAllRead(MPI_Comm comm, PetscBool final)
 {
   PetscInt n, nbad = 0;
-  char   **names, **values, list[1024] = "";
+  char   **names, **values, list[ABUT_LIST] = "";
 
   PetscFunctionBegin;
   PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
@@ -303,8 +302,8 @@ PetscErrorCode AbutOptionsCheckAllRead(MPI_Comm comm, PetscBool final)
 
     if (late && (!final || !strncmp(names[i], "objects_dump", 12) || !strncmp(names[i], "malloc", 6) || !strncmp(names[i], "options_", 8)))
       continue;
-    PetscCall(PetscStrlcat(list, nbad++ ? ", " : "", sizeof(list)));
-    PetscCall(PetscStrlcat(list, names[i], sizeof(list)));
+    PetscCall(AbutListAddItem_Private(list, sizeof(list), names[i]));
+    ++nbad;
   }
   PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
   AbutCheckInput(!nbad, comm,

@@ -4,25 +4,9 @@
 #include <dirent.h>
 #include <dlfcn.h>
 #include <limits.h>
-#include <abut/private/pluginimpl.h> /*I "abutsys.h" I*/
+#include <abut/private/sysimpl.h> /*I "abutsys.h" I*/
 
 #define ABUT_PLUGIN_SUFFIX "." PETSC_SLSUFFIX
-
-/* Appends an item to a list like "fembem, zz" unless it is there already */
-PetscErrorCode AbutListAddItem_Private(char list[], size_t len, const char item[])
-{
-  const char *at;
-  size_t      n;
-
-  PetscFunctionBegin;
-  PetscCall(PetscStrlen(item, &n));
-  for (at = strstr(list, item); at; at = strstr(at + 1, item)) {
-    if ((at == list || at[-1] == ' ') && (!at[n] || at[n] == ',')) PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  if (list[0]) PetscCall(PetscStrlcat(list, ", ", len));
-  PetscCall(PetscStrlcat(list, item, len));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /* Where plugins are looked for: `-plugin_path`, or else the folder of the library this function is in, and its subfolder `abut` */
 static PetscErrorCode AbutPluginGetFolders_Private(char folder[2][PETSC_MAX_PATH_LEN], PetscInt *n)
@@ -48,6 +32,33 @@ static PetscErrorCode AbutPluginGetFolders_Private(char folder[2][PETSC_MAX_PATH
   else PetscCall(PetscStrncpy(folder[0], ".", PETSC_MAX_PATH_LEN));
   PetscCall(PetscSNPrintf(folder[1], PETSC_MAX_PATH_LEN, "%s/abut", folder[0]));
   *n = 2;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The files in which `AbutPluginLoad()` looks for a type: none for a name that is a path */
+static PetscErrorCode AbutPluginGetFiles_Private(const char kind[], const char name[], char file[2][2 * PETSC_MAX_PATH_LEN], PetscInt *n)
+{
+  char folder[2][PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBegin;
+  *n = 0;
+  if (!name[0] || strchr(name, '/')) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AbutPluginGetFolders_Private(folder, n));
+  for (PetscInt i = 0; i < *n; ++i)
+    PetscCall(PetscSNPrintf(file[i], sizeof(file[i]), "%s/lib%s_%s" ABUT_PLUGIN_SUFFIX, folder[i], kind, name));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The same as a list for messages */
+PetscErrorCode AbutPluginListFiles_Private(const char kind[], const char name[], char list[], size_t len)
+{
+  char     file[2][2 * PETSC_MAX_PATH_LEN];
+  PetscInt n;
+
+  PetscFunctionBegin;
+  list[0] = 0;
+  PetscCall(AbutPluginGetFiles_Private(kind, name, file, &n));
+  for (PetscInt i = 0; i < n; ++i) PetscCall(AbutListAddItem_Private(list, len, file[i]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -192,17 +203,15 @@ PetscErrorCode AbutPluginAppendFromOptions(MPI_Comm comm)
 @*/
 PetscErrorCode AbutPluginLoad(MPI_Comm comm, const char kind[], const char name[], PetscBool *found)
 {
-  char     folder[2][PETSC_MAX_PATH_LEN], path[2 * PETSC_MAX_PATH_LEN];
+  char     file[2][2 * PETSC_MAX_PATH_LEN];
   PetscInt n;
 
   PetscFunctionBegin;
   *found = PETSC_FALSE;
-  if (!name[0] || strchr(name, '/')) PetscFunctionReturn(PETSC_SUCCESS); /* a name, not a path */
-  PetscCall(AbutPluginGetFolders_Private(folder, &n));
+  PetscCall(AbutPluginGetFiles_Private(kind, name, file, &n));
   for (PetscInt i = 0; i < n && !*found; ++i) {
-    PetscCall(PetscSNPrintf(path, sizeof(path), "%s/lib%s_%s" ABUT_PLUGIN_SUFFIX, folder[i], kind, name));
-    PetscCall(AbutPluginTestFile_Private(comm, path, found));
-    if (*found) PetscCall(AbutPluginOpen_Private(comm, path));
+    PetscCall(AbutPluginTestFile_Private(comm, file[i], found));
+    if (*found) PetscCall(AbutPluginOpen_Private(comm, file[i]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

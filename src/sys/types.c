@@ -1,4 +1,4 @@
-#include <abut/private/pluginimpl.h> /*I "abutsys.h" I*/
+#include <abut/private/sysimpl.h> /*I "abutsys.h" I*/
 
 /* Types that a class knows by name: those that have registered, and those of plugins that may be opened */
 
@@ -56,7 +56,7 @@ PetscErrorCode AbutPluginListTypes(const char kind[], PetscFunctionList list, ch
 PetscErrorCode AbutPluginFindType(MPI_Comm comm, const char key[], const char kind[], const char class[], const PetscFunctionList *list,
                                   const char type[], PetscVoidFunction *create)
 {
-  char      names[512];
+  char      names[ABUT_LIST], files[ABUT_LIST];
   PetscBool found;
 
   PetscFunctionBegin;
@@ -68,7 +68,8 @@ PetscErrorCode AbutPluginFindType(MPI_Comm comm, const char key[], const char ki
   AbutCheckInput(!found, comm, "%s: lib%s_%s.so was opened but registers no %s \"%s\"; its Abut%sRegister() must use the name of the file",
                  key, kind, type, kind, type, class);
   PetscCall(AbutPluginListTypes(kind, *list, names, sizeof(names)));
+  PetscCall(AbutPluginListFiles_Private(kind, type, files, sizeof(files)));
   SETERRQ(comm, PETSC_ERR_USER_INPUT,
-          "%s: no %s named \"%s\"; there are: %s (a plugin from elsewhere is loaded with -plugin path/to/lib%s_NAME.so)", key, kind, type,
-          names[0] ? names : "none", kind);
+          "%s: no %s named \"%s\"; there are: %s (a plugin from elsewhere is loaded with -plugin path/to/lib%s_NAME.so%s%s)", key, kind,
+          type, names[0] ? names : "none", kind, files[0] ? "; there is no " : "", files);
 }

@@ -47,6 +47,14 @@ def test_every_further_body_makes_the_same_objects():
     assert difference(log_of(two), log_of(one)) == difference(log_of(three), log_of(two))
 
 
+def test_effects_along_sides_are_logged_once_for_all_points():
+    """Whatever the number of elements: a pressure when the load is made, and when estimators get the boundary; what stands out when the pair is set up"""
+    for kind, event in (("pressure", "AbutPressure"), ("overlap", "AbutOverlap")):
+        keys = next(row.keys for row in EFFECTS if row.name == f"effect {kind}")
+        counts = [Matrix(BUILD).measure(BLOCKS, f"{keys} -lower_mesh_cells {cells} -upper_mesh_cells {cells}").events[event] for cells in ("8,2", "32,8")]
+        assert counts == [1, 1], (kind, counts)
+
+
 def test_the_layers_have_exactly_the_events_and_objects_of_their_loop():
     """c meshes of the lower body, one of the upper; s sweeps, eqs. (20) and (21), each one solve of both bodies; one estimate a mesh"""
     matrix = Matrix(BUILD)

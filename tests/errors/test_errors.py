@@ -94,6 +94,19 @@ def test_every_bad_input_ends_in_its_line():
     case("H26", "seconds to the end of the slowest of them", check(cases), 5)
 
 
+def test_long_messages_are_said_to_their_end():
+    """A value of 900 letters in a key that PETSc's objects read, which passes our own error handler; a list of names that has no room"""
+    long = 900 * "7" + "x"
+    assert not complain(
+        f"LAYERS -snes_ddneumann_gamma {long}", f'snes_ddneumann_gamma: "{long}" is not a number (Relaxation of a sweep, whatever accelerates it)'
+    )
+    with tempfile.TemporaryDirectory() as folder:
+        prepare(folder)
+        result = abut("FIXED " + " ".join(f"-nobody_knows_what_this_key_is_for_{i} 1" for i in range(50)), folder)
+    end = "nothing in this scene reads these keys; check the spelling (-help lists the keys), and that the scene names the body, pair or effect it belongs to"
+    assert re.fullmatch(rf"{LINE}(nobody_knows_what_this_key_is_for_\d+, ){{20,}}\.\.\.: {re.escape(end)}", result.stderr.strip()), result.stderr
+
+
 def test_constants_that_no_material_has():
     """Exit status 1 and one line that begins with the key, which has the name of the body; PETSc's log knows neither mesh nor matrix"""
     complaints, made = [], 0

@@ -117,6 +117,37 @@ START_TEST(sides_are_known_before_there_is_a_mesh)
 }
 END_TEST
 
+/* Six cells round, so chords of 15 degrees: outwards the first mesh ends at them, inwards, as all later ones will, at the circle */
+START_TEST(points_inside_chords_and_curves_are_covered_by_all_meshes)
+{
+  const PetscReal angle = PETSC_PI / 12.;
+  AbutMesh        mesh  = Load("tests/meshes/rotated.msh", PETSC_TRUE, 1);
+  PetscInt        near  = 0;
+
+  CkRefine(mesh, CkScattered, 3);
+  for (PetscInt i = 0; i < 45; ++i)
+    for (PetscInt j = 0; j < 60; ++j) {
+      const PetscReal phi = (i + 0.5) * angle * 6. / 45., r = j < 30 ? 0.986 + 1e-3 * j : 1.98 + 1e-3 * (j - 30),
+                      x[2]  = {r * PetscCosReal(phi), r * PetscSinReal(phi)};
+      const PetscReal chord = r * PetscCosReal(phi - angle * (PetscFloorReal(phi / angle) + 0.5)) / PetscCosReal(0.5 * angle);
+      PetscBool       covers, inside = PETSC_FALSE, expected = (PetscBool)(r > 1. && chord < 2.);
+
+      if (PetscMin(PetscAbsReal(r - 1.), PetscAbsReal(chord - 2.)) < 1e-6) continue;
+      CkOk(AbutMeshCovers(mesh, x, &covers));
+      ck_assert_msg(covers == expected, "(%g, %g) at %g", (double)x[0], (double)x[1], (double)r);
+      for (PetscInt c = 0; c < CkTopology(mesh)->ncells && !inside; ++c) {
+        PetscReal xi[2];
+
+        CkOk(AbutMeshInvertCell(mesh, c, x, xi, &inside));
+      }
+      ck_assert(CkSum(inside) || !covers);
+      near += !covers && chord > 1. && r < 2.;
+    }
+  ck_assert_int_gt(near, 100);
+  CkOk(AbutMeshDestroy(&mesh));
+}
+END_TEST
+
 int main(int argc, char **argv)
 {
   Suite *suite = suite_create("file");
@@ -130,6 +161,7 @@ int main(int argc, char **argv)
   tcase_add_test(tc, vertices_of_curved_sides_lie_on_the_curve);
   tcase_add_test(tc, levels_of_triangles_count_bisections);
   tcase_add_test(tc, sides_are_known_before_there_is_a_mesh);
+  tcase_add_test(tc, points_inside_chords_and_curves_are_covered_by_all_meshes);
   suite_add_tcase(suite, tc);
   failed = CkRun(suite);
   return AbutFinalize() || failed ? EXIT_FAILURE : EXIT_SUCCESS;

@@ -69,6 +69,22 @@ def test_every_format_is_read():
     assert len(energies) == 1, energies
 
 
+def test_a_mesh_is_plane_to_the_digits_of_its_size():
+    """As one that a mesher turned into the plane: heights of 1e-12 of its size change nothing, in small and large units; u1 = 1e-3 y is pure shear"""
+    for unit in 1e-6, 1, 1e6:
+        with file(box((0, 0), (2 * unit, unit), 4, 2), version=2.2) as path:
+            with open(path) as f:
+                lines = f.read().splitlines()
+            first, energies = lines.index("$Nodes") + 2, []
+            for height in 0, 1e-12 * unit:
+                for k in range(first, first + 15):
+                    lines[k] = f"{lines[k].rsplit(' ', 1)[0]} {(-1) ** k * height}"
+                with open(path, "w") as f:
+                    f.write("\n".join(lines) + "\n")
+                energies.append(body(path, ("bottom", "right", "top", "left"), {"u1": "1e-3*y", "u2": 0})["energy.strain"])
+        assert energies[0] == energies[1] and abs(energies[0] / (SHEAR * 1e-6 * unit**2) - 1) < 1e-9, (unit, energies)
+
+
 def area(path, sides, size, *options, **expect):
     """By the energy of a uniform strain; and the number of cells"""
     r = body(path, sides, LINEAR, f"-part_mesh_size {size}", *options, **expect)

@@ -1,5 +1,5 @@
 """-output as a series in time, as VTK reads it: every cycle of every load step with meshes of its own, bodies and pairs, and after a crash the cycles so far."""
-import json, os, random, re, signal, subprocess, sys, tempfile, time, unittest, xml.etree.ElementTree as xml
+import json, math, os, random, re, signal, subprocess, sys, tempfile, time, unittest, xml.etree.ElementTree as xml
 
 from abut import PROGRAM, ROOT, execute, read_csv, run
 
@@ -139,6 +139,56 @@ def test_a_pair_of_order_two_has_the_consistent_pressure():
         _, grids = read_h5(index)[-1]
         exact = 1.366e-3 / (2 * (1 - 0.3**2) / 2.1e5)
         assert all(abs(p / exact - 1) < 1e-6 for p in grids["mid"]["pressure"]), grids["mid"]["pressure"]
+
+
+FRICTION = """-scene_bodies upper,lower -scene_pairs mid -mid_pair_bodies upper,lower -mid_pair_sides bottom,top -mid_pair_friction 0.3 -mid_pair_penalty 0
+    -upper_mesh_box 0,0,2,1 -upper_mesh_cells 5,3 -upper_material_young 2.1e5 -upper_material_poisson 0.3 -upper_bc_top_u1 1e-3 -upper_bc_top_u2 -1e-3
+    -lower_mesh_box -1,-1,3,0 -lower_mesh_cells 6,2 -lower_material_young 2.1e5 -lower_material_poisson 0.3 -lower_bc_bottom_u1 0 -lower_bc_bottom_u2 0"""
+CYLINDERS = os.path.join(ROOT, "examples", "hertz", "cylinders.yml")
+ARC = "-small_mesh_order 1 -large_mesh_order 1 -adaptor_target 0.1 -mid_pair_pressure_side first"
+
+
+def profile(path):
+    """Of the only pair: x, y and u_n along the first body, and x, y, gap and pressure"""
+    with open(path) as f:
+        rows = [line.rstrip("\n").split(",") for line in f][1:]
+    moved = [list(map(float, row[3:6])) for row in rows if row[1] == "1"]
+    return moved, [list(map(float, row[3:5] + row[6:8])) for row in rows if row[1] == "pressure"]
+
+
+def grid_of(folder, kind, name):
+    """Of the last time, by both formats: points, and fields at them"""
+    if kind == "xdmf":
+        grid = read_h5(f"{folder}/f.xdmf")[-1][1][name]
+        return grid["vertices"], {key: value for key, value in grid.items() if key != "vertices"}
+    grid = read_vtk(f"{folder}/f.pvd")[-1][1][name]
+    return [point[:2] for point in grid["points"]], {key: [row[0] if len(row) == 1 else row for row in rows] for key, rows in grid["point"].items()}
+
+
+def test_pairs_with_two_components_have_the_fields_of_the_profile():
+    """With friction and along arcs, where traces are vectors: gap and pressure as in the CSV, and the displacement of the body along its normal. That of an
+    arc with radius R is off the circle's by at most the angle of half an element, h/2R"""
+    flat, arc = (lambda x, y: (0, -1)), (lambda x, y: (x / 8, (y - 8) / 8))
+    cases = ((None, FRICTION, "upper", flat, 0), (CYLINDERS, ARC, "small", arc, 1 / 8), (CYLINDERS, f"{ARC} -mid_pair_friction 0.2", "small", arc, 1 / 8))
+    for kind in "xdmf", "vtu":
+        for scene, words, body, normal, curvature in cases:
+            with tempfile.TemporaryDirectory() as folder:
+                run(scene, words, f"-output {folder}/f.{kind} -output_profile {folder}/p.csv", ranks=2)
+                (points, mid), (vertices, part) = (grid_of(folder, kind, name) for name in ("mid", body))
+                moved, pressed = profile(f"{folder}/p.csv")
+            near = lambda a, b: math.dist(a, b) < 1e-8
+            at, largest = dict(zip(map(tuple, vertices), part["displacement"])), max(abs(un) for _, _, un in moved)
+            longest = 1.01 * max(map(math.dist, points, points[1:]))
+            pressed.reverse()
+            assert max(mid["pressure"]) > 0 and len(points) == len(moved) >= len(pressed) > 5
+            for place, p, gap, un, (x, y, expected) in zip(points, mid["pressure"], mid["gap"], mid["normal_displacement"], moved):
+                n, u = normal(x, y), at[tuple(place)]
+                assert near(place, (x, y)) and abs(un - expected) <= 1e-9 * largest, (place, x, y, un, expected)
+                assert abs(un - u[0] * n[0] - u[1] * n[1]) <= 1e-9 * largest + math.hypot(*u[:2]) * curvature * longest / 2, (place, un, u, n)
+                if pressed and near(place, pressed[-1][:2]):
+                    assert abs(gap - pressed[-1][2]) <= 1e-9 and abs(p - pressed[-1][3]) <= 1e-9 * max(mid["pressure"]), (place, gap, p)
+                    pressed.pop()
+            assert not pressed
 
 
 def test_profiles_of_every_step():

@@ -127,6 +127,7 @@ PETSC_INTERN PetscErrorCode    AbutBodyGiveFactorRoom_Private(AbutBody);
 PETSC_INTERN PetscErrorCode    AbutBodyReset_Private(AbutBody);
 PETSC_INTERN PetscErrorCode    AbutBodyNeedSetUp_Private(AbutBody);
 PETSC_INTERN PetscErrorCode    AbutBodyModesCreate_Private(AbutBody);
+PETSC_INTERN PetscErrorCode    AbutBodyFind_Private(PetscInt, AbutBody[], const char[], AbutBody *, char[], size_t);
 PETSC_INTERN PetscErrorCode    AbutBodyModesSetUp_Private(AbutBody);
 PETSC_INTERN PetscErrorCode    AbutBodyModesReset_Private(AbutBody);
 PETSC_INTERN PetscErrorCode    AbutBodyFactor_Private(AbutBody);
@@ -147,8 +148,11 @@ PETSC_INTERN PetscErrorCode AbutBodyMult_Private(AbutBody, Mat, Vec, Vec);
 PETSC_INTERN PetscErrorCode AbutBodyShare_Private(AbutBody, PetscMPIInt, PetscReal[]);
 /* forces.c */
 PETSC_INTERN PetscErrorCode AbutBodyHookForces_Private(AbutBody);
+PETSC_INTERN PetscErrorCode AbutBodyLogHooks_Private(AbutBody, AbutHookType, PetscInt, PetscBool);
 PETSC_INTERN PetscBool      AbutBodyHasTraction_Private(AbutBody, PetscInt, PetscInt);
 PETSC_INTERN PetscErrorCode AbutBodyHookTraction_Private(AbutBody, PetscInt, const PetscReal[2], const PetscReal[2], PetscReal[2]);
+/* side.c */
+PETSC_INTERN PetscReal AbutElementNormal_Private(const PetscReal[2], const PetscReal[2], PetscReal[2]);
 /* foundation.c */
 PETSC_INTERN PetscErrorCode AbutBodyAssembleFoundation_Private(AbutBody);
 PETSC_INTERN PetscErrorCode AbutBodyHoldsSide_Private(AbutBody, PetscInt, PetscInt, PetscBool *);

@@ -23,6 +23,11 @@ PETSC_INTERN PetscErrorCode AbutEffectCreate_PlaneStress(AbutEffect);
 PETSC_INTERN PetscErrorCode AbutEffectCreate_Axisymmetric(AbutEffect);
 PETSC_INTERN PetscErrorCode AbutEffectSetKinematics_Private(AbutEffect, AbutBody, AbutKinematics, PetscInt);
 
+/* Where a formula over a body is looked at before any work, see options.c */
+#define ABUT_EFFECT_LINE    32
+#define ABUT_EFFECT_SAMPLES (ABUT_EFFECT_LINE * ABUT_EFFECT_LINE)
+PETSC_INTERN PetscErrorCode AbutEffectGetSample_Private(AbutBody, PetscInt, PetscReal[2], PetscReal[2]);
+
 /* Data of the types that are one formula along one side, see side.c */
 typedef struct {
   const char    *opt, *text; /* the key of the formula, and a line on it */

@@ -64,13 +64,6 @@ struct _p_AbutMesh {
   void            *data;
 };
 
-/* Triangles: the first mesh, from which coarser ones are made, and the vertices that were taken out once, in order; see merge.c */
-typedef struct {
-  DM         first;
-  PetscInt   ngone;
-  PetscReal *gone; /* [2*ngone] */
-} AbutMesh_Triangles;
-
 /* Coordinate of the i-th line of the first grid; the last one is the side of the box to the last bit */
 static inline PetscReal AbutMeshGridLine_Private(AbutMesh mesh, PetscInt d, PetscInt i)
 {
@@ -83,8 +76,6 @@ PETSC_INTERN PetscInt64     AbutMeshShare_Private(AbutMesh, PetscMPIInt, PetscIn
 PETSC_INTERN PetscErrorCode AbutMeshSetDM_Private(AbutMesh, DM);
 PETSC_INTERN PetscErrorCode AbutMeshCreate_Forest(AbutMesh);
 PETSC_INTERN PetscErrorCode AbutMeshCreate_Triangles(AbutMesh);
-PETSC_INTERN PetscErrorCode AbutTrianglesSplit_Private(AbutMesh, DM, DMLabel, DM *);
-PETSC_INTERN PetscErrorCode AbutTrianglesMerge_Private(AbutMesh, const PetscBool[], DM *);
 PETSC_INTERN PetscErrorCode AbutMeshRefineToSize_Private(AbutMesh);
 PETSC_INTERN PetscErrorCode AbutMeshTopologyBuild_Private(AbutMesh);
 PETSC_INTERN PetscErrorCode AbutMeshTopologyReset_Private(AbutMesh);

@@ -85,6 +85,7 @@ PETSC_INTERN PetscBool      AbutPairEdgeBeyond_Private(AbutPair, const PetscReal
 PETSC_INTERN PetscErrorCode AbutPairFrictionFromOptions_Private(AbutPair);
 PETSC_INTERN PetscErrorCode AbutPairFrictionDestroy_Private(AbutPair);
 PETSC_INTERN PetscErrorCode AbutPairFrictionSetUp_Private(AbutPair);
+PETSC_INTERN PetscReal      AbutPairWalkTo_Private(PetscInt, const PetscReal[], const PetscReal[2], PetscInt *);
 PETSC_INTERN PetscErrorCode AbutPairFrictionLaw_Private(AbutPair, const PetscReal[], const PetscReal[], PetscReal[]);
 PETSC_INTERN PetscErrorCode AbutPairFrictionForce_Private(AbutPair, const PetscReal[], PetscReal *const[2]);
 PETSC_INTERN PetscErrorCode AbutPairFrictionState_Private(AbutPair, const PetscReal[], const PetscReal[], const PetscReal[], PetscReal,
