@@ -157,7 +157,7 @@ PetscErrorCode AbutBodyView(AbutBody body, PetscViewer viewer)
                                    (double)body->young, (double)body->poisson, AbutKinematicsNames[body->kinematics]));
   PetscCall(PetscViewerASCIIPushTab(viewer));
   PetscCall(AbutMeshGetRanks(body->mesh, &first, &n));
-  if (body->split) PetscCall(PetscViewerASCIIPrintf(viewer, "on %d ranks from number %d\n", (int)n, (int)first));
+  if (body->split) PetscCall(PetscViewerASCIIPrintf(viewer, "on ranks %d to %d\n", (int)first, (int)(first + n - 1)));
   if (body->generation >= 0) {
     PetscCall(AbutMeshView(body->mesh, viewer));
     PetscCall(AbutBodyViewIntegration(body, viewer));
