@@ -40,8 +40,14 @@ static PetscErrorCode AbutSceneLoop_Private(AbutScene scene, PetscBool *converge
   PetscFunctionBegin;
   if (!scene->snes) { /* bodies without contact: one solve each */
     for (PetscInt b = 0; b < scene->nbodies; ++b) PetscCall(AbutBodySolve(scene->body[b], NULL));
-    *converged     = PETSC_TRUE;
-    scene->verdict = "converged";
+    *converged = PETSC_TRUE;
+    for (PetscInt b = 0; b < scene->nbodies; ++b) {
+      PetscBool solved;
+
+      PetscCall(AbutBodyGetSolved(scene->body[b], &solved));
+      if (!solved) *converged = PETSC_FALSE;
+    }
+    scene->verdict = *converged ? "converged" : "linear_solver";
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (scene->interleave) {

@@ -67,3 +67,15 @@ def test_a_body_on_one_rank_sends_nothing_to_solve_it():
         run(LAYERS, words, coarse, f"-log_view :{folder}/log", ranks=2)
         text = open(f"{folder}/log").read()
     assert float(re.search(r"^MatMult +\d+ [\d.]+ \S+ +\S+ +\S+ +\S+ +(\S+)", text, re.M)[1]) > 0
+
+
+def test_a_solver_that_fails_on_some_ranks_is_known_to_all():
+    """With contact, and without"""
+    coarse = "-upper_mesh_cells 16,4 -adaptor_threshold 9 -upper_pc_type jacobi -upper_ksp_type cg -upper_ksp_max_it 2"
+    for ranks in 1, 3:
+        assert split(LAYERS, ACTIVE, coarse, ranks=ranks, expect=2)[0]["verdict"] == "linear_solver"
+        words = "-scene_bodies a,b -b_ksp_type cg -b_pc_type jacobi -b_ksp_max_it 2"
+        for name in "ab":
+            words += f" -{name}_mesh_box 0,0,4,1 -{name}_mesh_cells 8,2 -{name}_material_young 2e5 -{name}_material_poisson 0.3"
+            words += f" -{name}_bc_left_u1 0 -{name}_bc_bottom_u2 0 -{name}_bc_top_u2 -1e-3"
+        assert split(None, words, ranks=ranks, expect=2)[0]["verdict"] == "linear_solver"
