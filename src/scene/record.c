@@ -47,6 +47,26 @@ static PetscErrorCode AbutSceneScales_Private(AbutBody body, PetscReal *force, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* How evenly a body is cut: the most cells of a rank over the mean. Assembly, stresses and estimators follow the cells; the rows of the
+   matrix do too, but for the nodes on the cut, each of which has one owner. */
+static PetscErrorCode AbutSceneRecordImbalance_Private(AbutScene scene, AbutBody body, const char name[])
+{
+  MPI_Comm                comm = PetscObjectComm((PetscObject)body);
+  const AbutMeshTopology *t;
+  AbutMesh                mesh;
+  PetscMPIInt             size;
+  PetscInt                cells, most;
+
+  PetscFunctionBegin;
+  PetscCall(AbutBodyGetMesh(body, &mesh));
+  PetscCall(AbutMeshGetTopology(mesh, &t));
+  PetscCall(AbutMeshGetCellCount(mesh, &cells));
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCallMPI(MPI_Allreduce(&t->ncells, &most, 1, MPIU_INT, MPI_MAX, comm));
+  PetscCall(AbutSceneSetReal_Private(scene, "body", name, "imbalance", (PetscReal)most * size / cells));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode AbutSceneRecordBodies_Private(AbutScene scene)
 {
   AbutRecorder rec      = scene->recorder;
@@ -84,6 +104,7 @@ static PetscErrorCode AbutSceneRecordBodies_Private(AbutScene scene)
     PetscCall(AbutSceneSetReal_Private(scene, "body", name, "h_ratio", m.ratio));
     PetscCall(AbutSceneSetReal_Private(scene, "body", name, "lemma", m.lemma));
     if (uniform > 0.) PetscCall(AbutSceneSetReal_Private(scene, "body", name, "unknowns_uniform", uniform));
+    PetscCall(AbutSceneRecordImbalance_Private(scene, scene->body[b], name));
     PetscCall(AbutBodyGetIntegration(scene->body[b], &integration, NULL));
     PetscCall(PetscSNPrintf(key, sizeof(key), "body.%s.integration", name));
     PetscCall(AbutRecorderSetString(rec, key, integration));
