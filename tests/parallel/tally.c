@@ -1,5 +1,6 @@
-/* Between a program and MPI: counts the bytes that each rank sends, those to single ranks and those that it puts into collective calls. Loaded
-   before the program (LD_PRELOAD); at the end rank 0 writes one line a rank into the file ABUT_TALLY. C alone: what Fortran sends goes by. */
+/* Between a program and MPI: counts the bytes that each rank sends, those to single ranks and those that it puts into collective calls.
+   Loaded before the program (LD_PRELOAD); at the end rank 0 writes one line a rank into the file ABUT_TALLY. C alone: what Fortran sends
+   goes by. */
 #include <mpi.h>
 #include <stdio.h>
 #include <stdlib.h>

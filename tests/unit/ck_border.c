@@ -1,5 +1,5 @@
 /* ranks: 2 3 4 */
-/* The contact ends where the part of one rank ends, on both bodies: the answer is that of a rank alone, which every rank finds for itself */
+/* The contact ends where the part of a rank ends, on both bodies: the answer is that of one rank alone, which each finds for itself */
 #include "ck.h"
 #include <abutscene.h>
 
