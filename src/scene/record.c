@@ -47,6 +47,24 @@ static PetscErrorCode AbutSceneScales_Private(AbutBody body, PetscReal *force, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* How evenly the ranks that have a body share it: the most cells of one over the mean. Assembly, stresses and estimators follow the cells;
+   the rows of the matrix do too, but for the nodes on the cut, each of which has one owner. */
+static PetscErrorCode AbutSceneRecordRanks_Private(AbutScene scene, AbutMesh mesh, const char name[])
+{
+  const AbutMeshTopology *t;
+  PetscMPIInt             first, n;
+  PetscInt                cells, most;
+
+  PetscFunctionBegin;
+  PetscCall(AbutMeshGetTopology(mesh, &t));
+  PetscCall(AbutMeshGetCellCount(mesh, &cells));
+  PetscCall(AbutMeshGetRanks(mesh, &first, &n));
+  PetscCallMPI(MPI_Allreduce(&t->ncells, &most, 1, MPIU_INT, MPI_MAX, PetscObjectComm((PetscObject)mesh)));
+  if (scene->split) PetscCall(AbutSceneSetReal_Private(scene, "body", name, "ranks", n));
+  PetscCall(AbutSceneSetReal_Private(scene, "body", name, "imbalance", (PetscReal)most * n / cells));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode AbutSceneRecordBodies_Private(AbutScene scene)
 {
   AbutRecorder rec      = scene->recorder;
@@ -59,7 +77,6 @@ static PetscErrorCode AbutSceneRecordBodies_Private(AbutScene scene)
     AbutMesh         mesh;
     AbutMeshMeasures m;
     PetscInt         n, cells, solves, its;
-    PetscMPIInt      first, nranks;
     const char      *integration;
     char             key[256];
     PetscReal        energy, work, reaction[2], applied[2], residual, uniform = 0., force = 0., floor = 0.;
@@ -85,8 +102,7 @@ static PetscErrorCode AbutSceneRecordBodies_Private(AbutScene scene)
     PetscCall(AbutSceneSetReal_Private(scene, "body", name, "h_ratio", m.ratio));
     PetscCall(AbutSceneSetReal_Private(scene, "body", name, "lemma", m.lemma));
     if (uniform > 0.) PetscCall(AbutSceneSetReal_Private(scene, "body", name, "unknowns_uniform", uniform));
-    PetscCall(AbutMeshGetRanks(mesh, &first, &nranks));
-    if (scene->split) PetscCall(AbutSceneSetReal_Private(scene, "body", name, "ranks", nranks));
+    PetscCall(AbutSceneRecordRanks_Private(scene, mesh, name));
     PetscCall(AbutBodyGetIntegration(scene->body[b], &integration, NULL));
     PetscCall(PetscSNPrintf(key, sizeof(key), "body.%s.integration", name));
     PetscCall(AbutRecorderSetString(rec, key, integration));

@@ -3,9 +3,10 @@
 Round-off differs, so keys that are round-off themselves are left out, and the residual of the loop, a difference of almost equal traces,
 has fewer digits.
 """
-import math, os, tempfile, xml.etree.ElementTree as xml
+import os, tempfile
 
-from abut import LAYERS, case, read_csv, run
+from abut import LAYERS, case, run
+from same import digits_off, farthest, outcome, read_values
 
 CHEAP = "-mid_pair_penalty 0.5 -snes_ddneumann_gamma 0"  # a tenth of the sweeps
 TIMES = ("time.", "memory.")
@@ -13,7 +14,7 @@ ROUNDOFF = TIMES + ("check.", "error.linear", "residual.linear")
 
 
 def compared(key):
-    return not key.startswith(ROUNDOFF) and not key.endswith((".balance", ".complementarity"))
+    return not key.startswith(ROUNDOFF) and not key.endswith((".balance", ".complementarity", ".imbalance"))
 
 
 def check_same(one, other, where):
@@ -25,29 +26,6 @@ def check_same(one, other, where):
             assert abs(a - b) <= digits * abs(a) + floor, (where, key, a, b)
         else:
             assert a == b, (where, key, a, b)
-
-
-def numbers(array):
-    return [float(word) for word in array.text.split()]
-
-
-def read_cells(path):
-    """The cells of a VTU file as a set: corners, with nine digits, and level"""
-    data = {array.get("Name"): numbers(array) for array in xml.parse(path).getroot().iter("DataArray")}
-    x = data["vertices"]
-    points = [(f"{x[i]:.9g}", f"{x[i + 1]:.9g}") for i in range(0, len(x), 3)]
-    ends = [int(end) for end in data["offsets"]]
-    corners = [tuple(sorted(points[int(k)] for k in data["connectivity"][a:b])) for a, b in zip([0] + ends, ends)]
-    return set(zip(corners, data["level"]))
-
-
-def outcome(scene, options, ranks, expect):
-    """Record, rows of the cycles, cells of all meshes"""
-    with tempfile.TemporaryDirectory() as folder:
-        record = run(scene, *options, f"-record_csv {folder}/cycles.csv -output {folder}/fields.vtu", ranks=ranks, expect=expect, limit=100)
-        rows = read_csv(f"{folder}/cycles.csv")
-        cells = {name: read_cells(f"{folder}/{name}") for name in sorted(os.listdir(folder)) if name.endswith(".vtu")}
-    return record, rows, cells
 
 
 def check_ranks(*options, scene=LAYERS, ranks=(2, 3), expect=0):
@@ -98,28 +76,6 @@ def test_ranks_without_a_cell():
     for estimator in ("fembem", "zz"):
         record = check_ranks(*tiny, f"-adaptor_bodies lower,upper -adaptor_max_level 3 -estimator_type {estimator}", expect=3)
         assert record["body.lower.cells"] > 8 and record["body.upper.cells"] > 8, estimator
-
-
-def read_values(path):
-    """Displacements of the points and, if there are any, indicators of the cells of a VTU file, by where they are, with all digits"""
-    data = {array.get("Name"): numbers(array) for array in xml.parse(path).getroot().iter("DataArray")}
-    x, u, corner = data["vertices"], data["displacement"], data["connectivity"]
-    points = [(f"{x[i]:.9g}", f"{x[i + 1]:.9g}") for i in range(0, len(x), 3)]
-    moved = {(point, d): u[3 * i + d] for i, point in enumerate(points) for d in range(2)}
-    ends = [int(end) for end in data["offsets"]]
-    cells = [tuple(sorted(points[int(k)] for k in corner[a:b])) for a, b in zip([0] + ends, ends)]
-    return moved, dict(zip(cells, data.get("eta", [])))
-
-
-def farthest(one, other):
-    """The largest difference of two fields on the same points, over the largest value"""
-    assert one.keys() == other.keys()
-    return max((abs(one[at] - other[at]) for at in one), default=0) / max(map(abs, one.values()), default=1)
-
-
-def digits_off(one, other):
-    """Relative difference beyond one unit of the tenth digit, which is the last of the record"""
-    return max(0, abs(one - other) - 1.01 * 10.0 ** (math.floor(math.log10(one)) - 9)) / one
 
 
 def fields(options, ranks, expect):

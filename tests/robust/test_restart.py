@@ -6,7 +6,7 @@ import os, random, re, shutil, signal, subprocess, sys, tempfile, time
 from abut import LAYERS, PROGRAM, ROOT, case, read_csv, read_record, run, run_error
 
 sys.path.insert(0, os.path.join(ROOT, "tests", "parallel"))
-from test_ranks import farthest, read_values  # noqa: E402
+from same import farthest, read_values  # noqa: E402
 
 EXACT = os.path.join(ROOT, "examples", "studies", "accuracy", "layers_exact.yml")
 STACK = os.path.join(ROOT, "examples", "stack", "stack.yml")
@@ -17,7 +17,7 @@ GRADED = (EXACT, "-lower_mesh_cells 3,1 -lower_mesh_size 0.2+0.3*abs(x-1) -adapt
 INTERLEAVED = (LAYERS, "-adaptor_threshold 0.2 -scene_interleave yes -snes_type ddneumann")
 STEPPED = (EXACT, "-adaptor_target 2e-2 -scene_load_steps 0.5,1,0,0.7,-1,1 -lower_ksp_type cg -lower_pc_type jacobi -lower_ksp_rtol 1e-10")
 STAYING = (INTERLEAVED[0], INTERLEAVED[1] + " -scene_eps_u 5e-4 -upper_mesh_cells 16,4")  # whose last cycles are on the same meshes
-COUNTED = re.compile(r"time\.|memory|residual|balance|complementarity|penetration|check|error\.loop|error\.linear|slack")
+COUNTED = re.compile(r"time\.|memory|imbalance|residual|balance|complementarity|penetration|check|error\.loop|error\.linear|slack")
 
 
 def stopped(folder, scene, every=1, ranks=1):
