@@ -65,7 +65,7 @@ static PetscErrorCode AbutEstimatorEstimate_Fembem(AbutEstimator est, AbutBody b
   PetscCall(AbutBodyGetPlaneMaterial(body, &young, &poisson));
   PetscCall(AbutBodyGetBoundary(body, &given));
   PetscCall(FembemTakeOffForce(body, given));
-  PetscCall(FembemBoundaryCreate(comm, given, young, poisson, &boundary));
+  PetscCall(FembemBoundaryCreate(PetscObjectComm((PetscObject)body), given, young, poisson, &boundary));
   FembemTakeOffRigidMotion(&boundary);
   PetscCall(FembemRecoverTractions(&boundary));
   if (WantsGalerkin(fembem, given)) {
