@@ -3,7 +3,7 @@
 
 /*
    Cholesky's factorisation and what goes with it for matrices that every rank holds: each does a part of the operations and sends its
-   results to the others. For the few thousand unknowns of a dense system the matrices fit on all ranks, and afterwards each can solve alone.
+   results to the others, so that in the end every rank can solve alone. Limits: n unknowns take n^2 numbers on every rank.
 */
 #define FEMBEM_PANEL 64        /* columns: enough for the matrix products, few enough for the ranks to take turns */
 #define FEMBEM_CHUNK (1 << 24) /* numbers in a message */
@@ -36,7 +36,7 @@ static PetscErrorCode ShareColumns(MPI_Comm comm, PetscInt ld, const PetscInt fi
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One panel of the factor: the diagonal block, what is below it; 0 if it is not positive definite */
+/* One panel of the factor: the diagonal block, what is below it; info is 0 if it is positive definite */
 static PetscErrorCode FactorPanel(PetscBLASInt n, PetscBLASInt columns, PetscReal A[], PetscBLASInt lda, PetscBLASInt *info)
 {
   const PetscReal    one  = 1.;

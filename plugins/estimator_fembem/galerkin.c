@@ -50,8 +50,23 @@ static void HoldMotions(FembemSystem *s)
   }
 }
 
+/* Assembles and factors; V, W and D are what FembemSystemSolve() needs */
+PetscErrorCode FembemSystemFactor(FembemSystem *s)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc3((size_t)s->nt * s->nt, &s->V, (size_t)s->nt * s->nu, &s->W, (size_t)s->nu * s->nu, &s->D));
+  PetscCall(Assemble(s));
+  PetscCall(Factor(s, s->nt, s->V));
+  if (!s->nu) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FembemDenseForward(s->b->comm, s->nt, s->nu, s->V, s->W));
+  PetscCall(FembemDenseSchur(s->b->comm, s->nt, s->nu, s->W, s->D));
+  HoldMotions(s);
+  PetscCall(Factor(s, s->nu, s->D));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Leaves the unknown tractions in f and the unknown displacements in g */
-static PetscErrorCode Solve(FembemSystem *s)
+PetscErrorCode FembemSystemSolve(const FembemSystem *s, PetscReal f[], PetscReal g[])
 {
   const PetscReal one = 1., minus = -1.;
   PetscBLASInt    nt, nu, ldt, ldu, ione = 1, info;
@@ -61,46 +76,37 @@ static PetscErrorCode Solve(FembemSystem *s)
   PetscCall(PetscBLASIntCast(s->nu, &nu));
   ldt = PetscMax(nt, 1);
   ldu = PetscMax(nu, 1);
-  PetscCall(Factor(s, s->nt, s->V));
-  PetscCallBLAS("BLAStrsm", BLAStrsm_("L", "L", "N", "N", &nt, &ione, &one, s->V, &ldt, s->f, &ldt));
+  PetscCallBLAS("BLAStrsm", BLAStrsm_("L", "L", "N", "N", &nt, &ione, &one, s->V, &ldt, f, &ldt));
   if (nu) {
-    PetscCall(FembemDenseForward(s->b->comm, s->nt, s->nu, s->V, s->W));
-    PetscCall(FembemDenseSchur(s->b->comm, s->nt, s->nu, s->W, s->D));
-    for (PetscInt k = 0; k < s->nu; ++k) s->g[k] = -s->g[k];
-    if (nt) PetscCallBLAS("BLASgemv", BLASgemv_("T", &nt, &nu, &one, s->W, &ldt, s->f, &ione, &one, s->g, &ione));
-    HoldMotions(s);
-    PetscCall(Factor(s, s->nu, s->D));
-    PetscCallBLAS("LAPACKpotrs", LAPACKpotrs_("L", &nu, &ione, s->D, &ldu, s->g, &ldu, &info));
-    if (nt) PetscCallBLAS("BLASgemv", BLASgemv_("N", &nt, &nu, &minus, s->W, &ldt, s->g, &ione, &one, s->f, &ione));
+    for (PetscInt k = 0; k < s->nu; ++k) g[k] = -g[k];
+    if (nt) PetscCallBLAS("BLASgemv", BLASgemv_("T", &nt, &nu, &one, s->W, &ldt, f, &ione, &one, g, &ione));
+    PetscCallBLAS("LAPACKpotrs", LAPACKpotrs_("L", &nu, &ione, s->D, &ldu, g, &ldu, &info));
+    if (nt) PetscCallBLAS("BLASgemv", BLASgemv_("N", &nt, &nu, &minus, s->W, &ldt, g, &ione, &one, f, &ione));
   }
-  PetscCallBLAS("BLAStrsm", BLAStrsm_("L", "L", "T", "N", &nt, &ione, &one, s->V, &ldt, s->f, &ldt));
+  PetscCallBLAS("BLAStrsm", BLAStrsm_("L", "L", "T", "N", &nt, &ione, &one, s->V, &ldt, f, &ldt));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode SolveDense(FembemSystem *s)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscCalloc3((size_t)s->nt * s->nt, &s->V, (size_t)s->nt * s->nu, &s->W, (size_t)s->nu * s->nu, &s->D));
-  PetscCall(Assemble(s));
-  PetscCall(Solve(s));
-  PetscCall(PetscFree3(s->V, s->W, s->D));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode FembemSolveGalerkin(FembemBoundary *b, PetscInt *unknowns)
+PetscErrorCode FembemSolveGalerkin(FembemBoundary *b, FembemSolver solver, FembemCost *cost)
 {
   FembemSystem s;
 
   PetscFunctionBegin;
-  PetscCall(FembemSystemCreate(b, &s));
-  PetscCall(SolveDense(&s));
+  PetscCall(FembemSystemCreate(b, FembemSystemScale(b), &s));
+  *cost = (FembemCost){.unknowns = s.nt + s.nu};
+  if (cost->unknowns > solver.dense) PetscCall(FembemSystemIterate(&s, solver.tolerance, cost));
+  else {
+    PetscCall(FembemSystemFactor(&s));
+    PetscCall(FembemSystemSolve(&s, s.f, s.g));
+    cost->numbers = (size_t)s.nt * (s.nt + s.nu) + (size_t)s.nu * s.nu;
+  }
+  cost->pairs += s.pairs;
   for (PetscInt k = 0; k < s.rows * b->n; ++k)
     if (s.tindex[k] >= 0) s.t[k] = s.f[s.tindex[k]];
   for (PetscInt k = 0; k < 2 * b->nnodes; ++k)
     if (s.uindex[k] >= 0) s.u[k] = s.g[s.uindex[k]];
   for (PetscInt i = 0; i < b->nnodes; ++i) b->u[i] = s.scale * PetscCMPLX(s.u[2 * i], s.u[2 * i + 1]);
   for (PetscInt i = 0; i < (b->order + 1) * b->n; ++i) b->t[i] = b->young * PetscCMPLX(s.t[2 * i], s.t[2 * i + 1]);
-  *unknowns = s.nt + s.nu;
   PetscCall(FembemSystemDestroy(&s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -23,7 +23,8 @@ static void SystemNumber(FembemSystem *s)
   }
 }
 
-static PetscReal BodySize(const FembemBoundary *b)
+/* Of lengths */
+PetscReal FembemSystemScale(const FembemBoundary *b)
 {
   PetscReal lo[2] = {PETSC_MAX_REAL, PETSC_MAX_REAL}, hi[2] = {PETSC_MIN_REAL, PETSC_MIN_REAL};
 
@@ -31,7 +32,7 @@ static PetscReal BodySize(const FembemBoundary *b)
     lo[i % 2] = PetscMin(lo[i % 2], b->given->x[i]);
     hi[i % 2] = PetscMax(hi[i % 2], b->given->x[i]);
   }
-  return PetscMax(hi[0] - lo[0], hi[1] - lo[1]);
+  return 2. * PetscMax(hi[0] - lo[0], hi[1] - lo[1]);
 }
 
 static void GetLocal(const FembemSystem *s, PetscInt i, FembemLocal *l)
@@ -108,10 +109,9 @@ static PetscErrorCode FindMotions(FembemSystem *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode FembemSystemCreate(const FembemBoundary *b, FembemSystem *s)
+PetscErrorCode FembemSystemCreate(const FembemBoundary *b, PetscReal scale, FembemSystem *s)
 {
-  const PetscReal scale = 2. * BodySize(b);
-  FembemMaterial  mat   = b->mat;
+  FembemMaterial mat = b->mat;
 
   PetscFunctionBegin;
   mat.mu /= b->young;
@@ -131,9 +131,9 @@ PetscErrorCode FembemSystemCreate(const FembemBoundary *b, FembemSystem *s)
     s->t[2 * i + 1] = PetscImaginaryPartComplex(b->t[i]) / b->young;
   }
   SystemNumber(s);
-  s->V     = NULL;
-  s->list  = NULL;
-  s->pairs = 0;
+  s->V = s->W = s->D = NULL;
+  s->list            = NULL;
+  s->pairs           = 0;
   PetscCall(PetscCalloc4(s->nt + s->nu, &s->rhs, b->n, &s->local, 3 * b->given->ncontours * s->nu, &s->motion, 3 * b->given->ncontours,
                          &s->norm2));
   s->f = s->rhs;
@@ -146,6 +146,7 @@ PetscErrorCode FembemSystemCreate(const FembemBoundary *b, FembemSystem *s)
 PetscErrorCode FembemSystemDestroy(FembemSystem *s)
 {
   PetscFunctionBegin;
+  PetscCall(PetscFree3(s->V, s->W, s->D));
   PetscCall(PetscFree6(s->e, s->t, s->u, s->tindex, s->uindex, s->loaded));
   PetscCall(PetscFree4(s->rhs, s->local, s->motion, s->norm2));
   PetscFunctionReturn(PETSC_SUCCESS);

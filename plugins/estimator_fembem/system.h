@@ -43,9 +43,13 @@ typedef struct {
   PetscInt              pairs;          /* of elements, evaluated on this rank */
 } FembemSystem;
 
-PETSC_INTERN PetscErrorCode FembemSystemCreate(const FembemBoundary *, FembemSystem *);
+PETSC_INTERN PetscErrorCode FembemSystemCreate(const FembemBoundary *, PetscReal, FembemSystem *);
+PETSC_INTERN PetscReal      FembemSystemScale(const FembemBoundary *);
 PETSC_INTERN PetscErrorCode FembemSystemAddPair(FembemSystem *, PetscInt, PetscInt);
 PETSC_INTERN void           FembemSystemAddMass(FembemSystem *);
+PETSC_INTERN PetscErrorCode FembemSystemFactor(FembemSystem *);
+PETSC_INTERN PetscErrorCode FembemSystemSolve(const FembemSystem *, PetscReal[], PetscReal[]);
+PETSC_INTERN PetscErrorCode FembemSystemIterate(FembemSystem *, PetscReal, FembemCost *);
 PETSC_INTERN PetscErrorCode FembemSystemDestroy(FembemSystem *);
 
 /* Dense matrices that all ranks hold, by columns, and work on together; of one rank LAPACK's routines */
