@@ -1,5 +1,4 @@
-#include <petscdt.h>
-#include "far.h"
+#include "farimpl.h"
 
 /*
    The fast multipole method (L. Greengard and V. Rokhlin, J. Comput. Phys. 73, 1987) for the operators V, W and D. With w = t - z, t in the
@@ -14,43 +13,12 @@
 #define FEMBEM_FAR_THETA 0.5
 #define FEMBEM_FAR_TERMS 48
 
-/* Moments of a cluster for each power: of t1, t2; of the components of du/ds; of (t1 + i t2) conj(s); the same of du/ds; of u1 dt, u2 dt */
-enum {
-  OF_T1,
-  OF_T2,
-  OF_U1,
-  OF_U2,
-  OF_TC,
-  OF_UC,
-  OF_E1,
-  OF_E2,
-  NMOMENTS
-};
-typedef PetscComplex Moments[NMOMENTS];
-
-struct _n_FembemFar {
-  const FembemSystem *s; /* not owned */
-  FembemClusters      clusters;
-  PetscInt            terms, stride;  /* stride of the integrals of an element */
-  PetscReal          *binomial;       /* [terms*terms] k over i */
-  PetscComplex       *integral;       /* [stride*n] of P_n s^k ds, then of P_n conj(s) s^k ds */
-  Moments            *moment, *local; /* [terms] of each cluster */
-  PetscBool          *mine;           /* [clusters] this rank evaluates in it, or in a part of it */
-  PetscInt            nfar, nnear;
-  PetscInt           *far[2], *near[2]; /* pairs of clusters, each once */
-};
-
-static inline PetscReal Radius(const FembemCluster *cl)
-{
-  return PetscSqrtReal(cl->R2);
-}
-
 /* Counts the pairs, and stores them if there is room */
 static void FindPairs(FembemFar f, PetscInt a, PetscInt b)
 {
   const FembemCluster *A = &f->clusters.cluster[a], *B = &f->clusters.cluster[b];
 
-  if (Radius(A) + Radius(B) < FEMBEM_FAR_THETA * PetscAbsComplex(A->c - B->c)) {
+  if (FembemRadius(A) + FembemRadius(B) < FEMBEM_FAR_THETA * PetscAbsComplex(A->c - B->c)) {
     if (f->far[0]) {
       f->far[0][f->nfar] = a;
       f->far[1][f->nfar] = b;
@@ -86,7 +54,7 @@ static PetscErrorCode SetPairs(FembemFar f)
 }
 
 /* Leaves are dealt out by their place on the boundary */
-static PetscErrorCode SetMine(FembemFar f)
+static PetscErrorCode SetFlags(FembemFar f)
 {
   PetscMPIInt size, rank;
 
@@ -96,45 +64,19 @@ static PetscErrorCode SetMine(FembemFar f)
   for (PetscInt i = f->clusters.n - 1; i >= 0; --i) {
     const FembemCluster *cl = &f->clusters.cluster[i];
 
-    if (cl->left >= 0) f->mine[i] = (PetscBool)(f->mine[cl->left] || f->mine[cl->right]);
-    else f->mine[i] = (PetscBool)((PetscInt64)(cl->first + cl->end) * size / (2 * f->s->b->n) == rank);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode SetIntegrals(FembemFar f)
-{
-  const PetscInt order = f->s->b->order, npoints = (f->terms + order + 3) / 2;
-  PetscReal     *x, *weight, P[ABUT_SIDE_NODES_MAX];
-
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc2(npoints, &x, npoints, &weight));
-  PetscCall(PetscDTGaussQuadrature(npoints, -1., 1., x, weight));
-  for (PetscInt id = 0; id < f->clusters.n; ++id) {
-    const FembemCluster *cl = &f->clusters.cluster[id];
-
-    for (PetscInt i = cl->first; cl->left < 0 && i < cl->end; ++i) {
-      const FembemElement *e   = &f->s->e[i];
-      PetscComplex        *sum = f->integral + (size_t)f->stride * i;
-
-      for (PetscInt g = 0; g < npoints; ++g) {
-        const PetscComplex s     = e->a - cl->c + (0.5 + 0.5 * x[g]) * e->t;
-        PetscComplex       power = 0.5 * weight[g] * e->h;
-
-        FembemLegendreP(order, x[g], P);
-        for (PetscInt k = 0; k < f->terms; ++k, power *= s / Radius(cl))
-          for (PetscInt n = 0; n <= order; ++n) {
-            sum[(order + 1) * k + n] += P[n] * power;
-            sum[(order + 1) * (f->terms + k) + n] += P[n] * power * PetscConjComplex(s);
-          }
-      }
+    if (cl->left >= 0) {
+      f->mine[i]     = (PetscBool)(f->mine[cl->left] || f->mine[cl->right]);
+      f->traction[i] = (PetscBool)(f->traction[cl->left] || f->traction[cl->right]);
+      continue;
     }
+    f->mine[i] = (PetscBool)((PetscInt64)(cl->first + cl->end) * size / (2 * f->s->b->n) == rank);
+    for (PetscInt k = cl->first; k < cl->end; ++k)
+      if (f->s->local[k].tfree || f->s->local[k].loaded) f->traction[i] = PETSC_TRUE;
   }
-  PetscCall(PetscFree2(x, weight));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* tolerance: relative error of what clusters do to each other */
+/* tolerance: relative error of what clusters do to each other; measured, it is well below 0.1 theta^terms */
 PetscErrorCode FembemFarCreate(const FembemSystem *s, PetscReal tolerance, FembemFar *far)
 {
   FembemFar f;
@@ -142,16 +84,16 @@ PetscErrorCode FembemFarCreate(const FembemSystem *s, PetscReal tolerance, Fembe
   PetscFunctionBegin;
   PetscCall(PetscNew(&f));
   f->s      = s;
-  f->terms  = PetscMin(FEMBEM_FAR_TERMS, (PetscInt)PetscCeilReal(PetscLogReal(tolerance) / PetscLogReal(FEMBEM_FAR_THETA)));
+  f->terms  = PetscMin(FEMBEM_FAR_TERMS, (PetscInt)PetscCeilReal(PetscLogReal(tolerance / 0.1) / PetscLogReal(FEMBEM_FAR_THETA)));
   f->stride = 2 * f->terms * (s->b->order + 1);
   PetscCall(FembemClustersCreate(s->b->n, s->e, FEMBEM_FAR_LEAF, &f->clusters));
-  PetscCall(PetscCalloc5(f->terms * f->terms, &f->binomial, (size_t)f->stride * s->b->n, &f->integral, f->terms * f->clusters.n, &f->moment,
-                         f->terms * f->clusters.n, &f->local, f->clusters.n, &f->mine));
+  PetscCall(PetscCalloc6(f->terms * f->terms, &f->binomial, (size_t)f->stride * s->b->n, &f->integral, f->terms * f->clusters.n, &f->moment,
+                         f->terms * f->clusters.n, &f->local, f->clusters.n, &f->mine, f->clusters.n, &f->traction));
   for (PetscInt k = 0; k < f->terms; ++k)
     for (PetscInt i = 0; i <= k; ++i) f->binomial[f->terms * k + i] = i == 0 ? 1. : f->binomial[f->terms * k + i - 1] * (k - i + 1.) / i;
-  PetscCall(SetMine(f));
+  PetscCall(SetFlags(f));
   PetscCall(SetPairs(f));
-  PetscCall(SetIntegrals(f));
+  PetscCall(FembemFarSetIntegrals(f));
   *far = f;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -168,83 +110,15 @@ void FembemFarGetClusters(FembemFar f, const FembemClusters **clusters, PetscInt
 /* Held for integrals and moments */
 size_t FembemFarNumbers(FembemFar f)
 {
-  return 2 * ((size_t)f->stride * f->s->b->n + 2 * (size_t)NMOMENTS * f->terms * f->clusters.n);
-}
-
-/* Moments of an element of a leaf; or, transposed, what the element's nodes see */
-static void AddElement(FembemFar f, PetscInt i, const PetscReal t[], const PetscReal u[], Moments m[])
-{
-  const FembemSystem *s     = f->s;
-  const FembemBasis  *basis = &s->b->basis;
-  const PetscInt      n     = basis->order + 1;
-  const PetscReal     toarc = 2. / s->e[i].h;
-
-  for (PetscInt l = 0; l < n; ++l) {
-    PetscReal T[2] = {0., 0.}, U[2] = {0., 0.}, E[2] = {0., 0.};
-
-    for (PetscInt k = 0; k < n; ++k)
-      for (PetscInt c = 0; c < 2; ++c) {
-        const PetscReal v = u[2 * AbutBoundaryNode(s->b, i, k) + c];
-
-        T[c] += basis->coefficient[l][k] * t[s->rows * i + 2 * k + c];
-        U[c] += toarc * basis->derivative[l][k] * v;
-        E[c] += basis->coefficient[l][k] * v;
-      }
-    for (PetscInt k = 0; k < f->terms; ++k) {
-      const PetscComplex *in = f->integral + (size_t)f->stride * i + n * k + l, a = in[0], b = in[n * f->terms];
-      const PetscComplex  dt = a * PetscConjComplex(s->e[i].em);
-
-      for (PetscInt c = 0; c < 2; ++c) {
-        m[k][OF_T1 + c] += T[c] * a;
-        m[k][OF_U1 + c] += U[c] * a;
-        m[k][OF_E1 + c] += E[c] * dt;
-      }
-      m[k][OF_TC] += PetscCMPLX(T[0], T[1]) * b;
-      m[k][OF_UC] += PetscCMPLX(U[0], U[1]) * b;
-    }
-  }
-}
-
-static void SeeElement(FembemFar f, PetscInt i, Moments v[], PetscReal t[], PetscReal u[])
-{
-  const FembemSystem *s     = f->s;
-  const FembemBasis  *basis = &s->b->basis;
-  const PetscInt      n     = basis->order + 1;
-  const PetscReal     toarc = 2. / s->e[i].h;
-
-  for (PetscInt l = 0; l < n; ++l) {
-    PetscComplex T[2] = {0., 0.}, U[2] = {0., 0.}, E[2] = {0., 0.}, TC = 0., UC = 0.;
-
-    for (PetscInt k = 0; k < f->terms; ++k) {
-      const PetscComplex *in = f->integral + (size_t)f->stride * i + n * k + l, a = in[0], b = in[n * f->terms];
-
-      for (PetscInt c = 0; c < 2; ++c) {
-        T[c] += v[k][OF_T1 + c] * a;
-        U[c] += v[k][OF_U1 + c] * a;
-        E[c] += v[k][OF_E1 + c] * a;
-      }
-      TC += v[k][OF_TC] * b;
-      UC += v[k][OF_UC] * b;
-    }
-    for (PetscInt c = 0; c < 2; ++c) { /* Re(i z) = -Im z */
-      const PetscReal onT = PetscRealPartComplex(T[c]) + (c ? -PetscImaginaryPartComplex(TC) : PetscRealPartComplex(TC));
-      const PetscReal onU = PetscRealPartComplex(U[c]) + (c ? -PetscImaginaryPartComplex(UC) : PetscRealPartComplex(UC));
-      const PetscReal onE = PetscRealPartComplex(E[c] * PetscConjComplex(s->e[i].em));
-
-      for (PetscInt k = 0; k < n; ++k) {
-        t[s->rows * i + 2 * k + c] += basis->coefficient[l][k] * onT;
-        u[2 * AbutBoundaryNode(s->b, i, k) + c] += toarc * basis->derivative[l][k] * onU + basis->coefficient[l][k] * onE;
-      }
-    }
-  }
+  return 2 * ((size_t)f->stride * f->s->b->n + 2 * (size_t)FEMBEM_MOMENTS * f->terms * f->clusters.n);
 }
 
 /* (s + d)^k over the parent's radius, by powers of s over the child's: factors of the lower triangle */
 static void GetShift(FembemFar f, PetscInt child, PetscInt parent, PetscComplex *d, PetscComplex factor[])
 {
   const FembemCluster *from = &f->clusters.cluster[child], *to = &f->clusters.cluster[parent];
-  const PetscComplex   r = (from->c - to->c) / Radius(to);
-  const PetscReal      q = Radius(from) / Radius(to);
+  const PetscComplex   r = (from->c - to->c) / FembemRadius(to);
+  const PetscReal      q = FembemRadius(from) / FembemRadius(to);
   PetscComplex         power[FEMBEM_FAR_TERMS];
 
   *d       = from->c - to->c;
@@ -259,50 +133,51 @@ static void GetShift(FembemFar f, PetscInt child, PetscInt parent, PetscComplex 
 
 static void ShiftUp(FembemFar f, PetscInt child, PetscInt parent, PetscComplex factor[])
 {
-  const Moments *from = f->moment + f->terms * child;
-  Moments       *to   = f->moment + f->terms * parent;
-  PetscComplex   d;
+  const FembemMoments *from = f->moment + f->terms * child;
+  FembemMoments       *to   = f->moment + f->terms * parent;
+  PetscComplex         d;
 
   GetShift(f, child, parent, &d, factor);
   for (PetscInt k = 0; k < f->terms; ++k)
     for (PetscInt i = 0; i <= k; ++i) {
       const PetscComplex c = factor[f->terms * k + i];
 
-      for (PetscInt m = 0; m < NMOMENTS; ++m) to[k][m] += c * from[i][m];
-      to[k][OF_TC] += c * PetscConjComplex(d) * (from[i][OF_T1] + PETSC_i * from[i][OF_T2]);
-      to[k][OF_UC] += c * PetscConjComplex(d) * (from[i][OF_U1] + PETSC_i * from[i][OF_U2]);
+      for (PetscInt m = 0; m < FEMBEM_MOMENTS; ++m) to[k][m] += c * from[i][m];
+      to[k][FEMBEM_TC] += c * PetscConjComplex(d) * (from[i][FEMBEM_T1] + PETSC_i * from[i][FEMBEM_T2]);
+      to[k][FEMBEM_UC] += c * PetscConjComplex(d) * (from[i][FEMBEM_U1] + PETSC_i * from[i][FEMBEM_U2]);
     }
 }
 
 static void ShiftDown(FembemFar f, PetscInt child, PetscInt parent, PetscComplex factor[])
 {
-  const Moments *from = f->local + f->terms * parent;
-  Moments       *to   = f->local + f->terms * child;
-  PetscComplex   d;
+  const FembemMoments *from = f->local + f->terms * parent;
+  FembemMoments       *to   = f->local + f->terms * child;
+  PetscComplex         d;
 
   GetShift(f, child, parent, &d, factor);
   for (PetscInt k = 0; k < f->terms; ++k)
     for (PetscInt i = 0; i <= k; ++i) {
-      const PetscComplex c = factor[f->terms * k + i], t = c * PetscConjComplex(d) * from[k][OF_TC],
-                         u = c * PetscConjComplex(d) * from[k][OF_UC];
+      const PetscComplex c = factor[f->terms * k + i], t = c * PetscConjComplex(d) * from[k][FEMBEM_TC],
+                         u = c * PetscConjComplex(d) * from[k][FEMBEM_UC];
 
-      for (PetscInt m = 0; m < NMOMENTS; ++m) to[i][m] += c * from[k][m];
-      to[i][OF_T1] += t;
-      to[i][OF_T2] += PETSC_i * t;
-      to[i][OF_U1] += u;
-      to[i][OF_U2] += PETSC_i * u;
+      for (PetscInt m = 0; m < FEMBEM_MOMENTS; ++m) to[i][m] += c * from[k][m];
+      to[i][FEMBEM_T1] += t;
+      to[i][FEMBEM_T2] += PETSC_i * t;
+      to[i][FEMBEM_U1] += u;
+      to[i][FEMBEM_U2] += PETSC_i * u;
     }
 }
 
-/* Sums over the powers of the source for one power j of the target: the kernel 1/w, but for 1/d, and of the first four moments log w */
-static void SumPowers(FembemFar f, PetscInt j, const Moments scaled[], Moments cauchy, Moments logarithm)
+/* Sums over the powers of the source for one power j of the target, of moments first to end-1: the kernel 1/w, but for 1/d, and log w */
+static void SumPowers(FembemFar f, PetscInt j, PetscInt first, PetscInt end, const FembemMoments scaled[], FembemMoments cauchy,
+                      FembemMoments logarithm)
 {
-  for (PetscInt m = 0; m < NMOMENTS; ++m) cauchy[m] = logarithm[m] = 0.;
+  for (PetscInt m = 0; m < FEMBEM_MOMENTS; ++m) cauchy[m] = logarithm[m] = 0.;
   for (PetscInt i = 0; i + j < f->terms; ++i) {
     const PetscReal c = (i % 2 ? -1. : 1.) * f->binomial[f->terms * (i + j) + i], l = i + j ? -c / (i + j) : 0.;
 
-    for (PetscInt m = 0; m < NMOMENTS; ++m) cauchy[m] += c * scaled[i][m];
-    for (PetscInt m = OF_T1; m <= OF_U2; ++m) logarithm[m] += l * scaled[i][m];
+    for (PetscInt m = first; m < end; ++m) cauchy[m] += c * scaled[i][m];
+    for (PetscInt m = first; m < FEMBEM_UC; ++m) logarithm[m] += l * scaled[i][m];
   }
 }
 
@@ -315,53 +190,70 @@ static void Convert(FembemFar f, PetscInt target, PetscInt source)
   const PetscReal      mu = f->s->pairing.mat.mu, kappa = f->s->pairing.mat.kappa, F = 1. / (2. * PETSC_PI * (1. + kappa));
   const PetscReal      cV = 0.5 * F / mu, cD = 2. * F * mu;
   const PetscComplex   d = from->c - to->c, inv = PetscConjComplex(d) / FembemAbsSquare(d), iF = F * PETSC_i;
-  const Moments       *moment = f->moment + f->terms * source;
-  Moments             *local  = f->local + f->terms * target, scaled[FEMBEM_FAR_TERMS];
-  PetscComplex         power  = 1.;
+  const FembemMoments *moment = f->moment + f->terms * source;
+  FembemMoments       *local  = f->local + f->terms * target, scaled[FEMBEM_FAR_TERMS];
+  const PetscInt       first = f->traction[source] ? FEMBEM_T1 : FEMBEM_U1, end = f->traction[target] ? FEMBEM_MOMENTS : FEMBEM_E1;
+  PetscComplex         power = 1.;
 
-  for (PetscInt i = 0; i < f->terms; ++i, power *= Radius(from) * inv)
-    for (PetscInt m = 0; m < NMOMENTS; ++m) scaled[i][m] = power * moment[i][m];
+  for (PetscInt i = 0; i < f->terms; ++i, power *= FembemRadius(from) * inv)
+    for (PetscInt m = 0; m < FEMBEM_MOMENTS; ++m) scaled[i][m] = power * moment[i][m];
   power = 1.;
-  for (PetscInt j = 0; j < f->terms; ++j, power *= Radius(to) * inv) {
-    Moments      X, Y;
-    PetscComplex t, u, tc, uc;
+  for (PetscInt j = 0; j < f->terms; ++j, power *= FembemRadius(to) * inv) {
+    FembemMoments X, Y;
+    PetscComplex  t, u, tc, uc;
 
-    SumPowers(f, j, scaled, X, Y);
-    for (PetscInt m = 0; m < NMOMENTS; ++m) X[m] *= power * inv;
-    for (PetscInt m = OF_T1; m <= OF_U2; ++m) Y[m] = power * Y[m] + (j ? 0. : PetscLogComplex(d) * scaled[0][m]);
-    t  = X[OF_T1] + PETSC_i * X[OF_T2];
-    u  = X[OF_U1] + PETSC_i * X[OF_U2];
-    tc = PetscConjComplex(d) * t + X[OF_TC];
-    uc = PetscConjComplex(d) * u + X[OF_UC];
-    local[j][OF_T1] += cV * (tc - 2. * kappa * Y[OF_T1]) - iF * ((kappa + 1.) * X[OF_E1] + PETSC_i * (kappa - 1.) * X[OF_E2] + uc);
-    local[j][OF_T2] += cV * (PETSC_i * tc - 2. * kappa * Y[OF_T2]) -
-                       iF * ((kappa + 1.) * X[OF_E2] - PETSC_i * (kappa - 1.) * X[OF_E1] + PETSC_i * uc);
-    local[j][OF_TC] += iF * u - cV * t;
-    local[j][OF_U1] += cD * (2. * Y[OF_U1] - uc) - iF * tc;
-    local[j][OF_U2] += cD * (2. * Y[OF_U2] - PETSC_i * uc) + F * tc;
-    local[j][OF_UC] += cD * u + iF * t;
-    local[j][OF_E1] += iF * ((kappa + 1.) * X[OF_T1] - PETSC_i * (kappa - 1.) * X[OF_T2]);
-    local[j][OF_E2] += iF * ((kappa + 1.) * X[OF_T2] + PETSC_i * (kappa - 1.) * X[OF_T1]);
+    SumPowers(f, j, first, end, scaled, X, Y);
+    for (PetscInt m = 0; m < FEMBEM_MOMENTS; ++m) X[m] *= power * inv;
+    for (PetscInt m = FEMBEM_T1; m < FEMBEM_UC; ++m) Y[m] = power * Y[m] + (j ? 0. : PetscLogComplex(d) * scaled[0][m]);
+    t  = X[FEMBEM_T1] + PETSC_i * X[FEMBEM_T2];
+    u  = X[FEMBEM_U1] + PETSC_i * X[FEMBEM_U2];
+    tc = PetscConjComplex(d) * t + X[FEMBEM_TC];
+    uc = PetscConjComplex(d) * u + X[FEMBEM_UC];
+    local[j][FEMBEM_T1] += cV * (tc - 2. * kappa * Y[FEMBEM_T1]) -
+                           iF * ((kappa + 1.) * X[FEMBEM_E1] + PETSC_i * (kappa - 1.) * X[FEMBEM_E2] + uc);
+    local[j][FEMBEM_T2] += cV * (PETSC_i * tc - 2. * kappa * Y[FEMBEM_T2]) -
+                           iF * ((kappa + 1.) * X[FEMBEM_E2] - PETSC_i * (kappa - 1.) * X[FEMBEM_E1] + PETSC_i * uc);
+    local[j][FEMBEM_TC] += iF * u - cV * t;
+    local[j][FEMBEM_U1] += cD * (2. * Y[FEMBEM_U1] - uc) - iF * tc;
+    local[j][FEMBEM_U2] += cD * (2. * Y[FEMBEM_U2] - PETSC_i * uc) + F * tc;
+    local[j][FEMBEM_UC] += cD * u + iF * t;
+    local[j][FEMBEM_E1] += iF * ((kappa + 1.) * X[FEMBEM_T1] - PETSC_i * (kappa - 1.) * X[FEMBEM_T2]);
+    local[j][FEMBEM_E2] += iF * ((kappa + 1.) * X[FEMBEM_T2] + PETSC_i * (kappa - 1.) * X[FEMBEM_T1]);
   }
 }
 
-/* Adds this rank's part of the far operator on t, [rows*n] at the nodes of each element, and u, [2*nnodes] */
-void FembemFarAdd(FembemFar f, const PetscReal t[], const PetscReal u[], PetscReal onT[], PetscReal onU[])
+/* FembemMoments are sums over the elements, so that each rank goes up from its own; those of all ranks are added */
+static PetscErrorCode GetMoments(FembemFar f, const PetscReal t[], const PetscReal u[])
 {
   PetscComplex factor[FEMBEM_FAR_TERMS * FEMBEM_FAR_TERMS];
 
+  PetscFunctionBegin;
   for (PetscInt i = 0; i < f->terms * f->clusters.n; ++i)
-    for (PetscInt m = 0; m < NMOMENTS; ++m) f->moment[i][m] = f->local[i][m] = 0.;
+    for (PetscInt m = 0; m < FEMBEM_MOMENTS; ++m) f->moment[i][m] = 0.;
   for (PetscInt id = f->clusters.n - 1; id >= 0; --id) {
     const FembemCluster *cl = &f->clusters.cluster[id];
 
+    if (!f->mine[id]) continue;
     if (cl->left < 0) {
-      for (PetscInt i = cl->first; i < cl->end; ++i) AddElement(f, i, t, u, f->moment + f->terms * id);
+      for (PetscInt i = cl->first; i < cl->end; ++i) FembemFarAddElement(f, i, t, u, f->moment + f->terms * id);
     } else {
-      ShiftUp(f, cl->left, id, factor);
-      ShiftUp(f, cl->right, id, factor);
+      if (f->mine[cl->left]) ShiftUp(f, cl->left, id, factor);
+      if (f->mine[cl->right]) ShiftUp(f, cl->right, id, factor);
     }
   }
+  PetscCall(FembemDenseSum(f->s->b->comm, 2 * (size_t)FEMBEM_MOMENTS * f->terms * f->clusters.n, (PetscReal *)f->moment));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds this rank's part of the far operator on t, [rows*n] at the nodes of each element, and u, [2*nnodes]; collective */
+PetscErrorCode FembemFarAdd(FembemFar f, const PetscReal t[], const PetscReal u[], PetscReal onT[], PetscReal onU[])
+{
+  PetscComplex factor[FEMBEM_FAR_TERMS * FEMBEM_FAR_TERMS];
+
+  PetscFunctionBegin;
+  PetscCall(GetMoments(f, t, u));
+  for (PetscInt i = 0; i < f->terms * f->clusters.n; ++i)
+    for (PetscInt m = 0; m < FEMBEM_MOMENTS; ++m) f->local[i][m] = 0.;
   for (PetscInt k = 0; k < f->nfar; ++k) {
     if (f->mine[f->far[0][k]]) Convert(f, f->far[0][k], f->far[1][k]);
     if (f->mine[f->far[1][k]]) Convert(f, f->far[1][k], f->far[0][k]);
@@ -371,12 +263,13 @@ void FembemFarAdd(FembemFar f, const PetscReal t[], const PetscReal u[], PetscRe
 
     if (!f->mine[id]) continue;
     if (cl->left < 0) {
-      for (PetscInt i = cl->first; i < cl->end; ++i) SeeElement(f, i, f->local + f->terms * id, onT, onU);
+      for (PetscInt i = cl->first; i < cl->end; ++i) FembemFarSeeElement(f, i, f->local + f->terms * id, onT, onU);
     } else {
-      ShiftDown(f, cl->left, id, factor);
-      ShiftDown(f, cl->right, id, factor);
+      if (f->mine[cl->left]) ShiftDown(f, cl->left, id, factor);
+      if (f->mine[cl->right]) ShiftDown(f, cl->right, id, factor);
     }
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode FembemFarDestroy(FembemFar *far)
@@ -384,7 +277,7 @@ PetscErrorCode FembemFarDestroy(FembemFar *far)
   PetscFunctionBegin;
   if (!*far) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(FembemClustersDestroy(&(*far)->clusters));
-  PetscCall(PetscFree5((*far)->binomial, (*far)->integral, (*far)->moment, (*far)->local, (*far)->mine));
+  PetscCall(PetscFree6((*far)->binomial, (*far)->integral, (*far)->moment, (*far)->local, (*far)->mine, (*far)->traction));
   PetscCall(PetscFree4((*far)->far[0], (*far)->far[1], (*far)->near[0], (*far)->near[1]));
   PetscCall(PetscFree(*far));
   PetscFunctionReturn(PETSC_SUCCESS);

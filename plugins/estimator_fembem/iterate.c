@@ -88,17 +88,19 @@ static PetscErrorCode AssembleNear(Operator *op)
 }
 
 /* Adds factor times this rank's far part for t and u to y, [nt+nu] */
-static void AddFar(Operator *op, PetscReal factor, PetscReal y[])
+static PetscErrorCode AddFar(Operator *op, PetscReal factor, PetscReal y[])
 {
   const FembemSystem *s = op->s;
 
+  PetscFunctionBegin;
   for (PetscInt k = 0; k < s->rows * s->b->n; ++k) op->onT[k] = 0.;
   for (PetscInt k = 0; k < 2 * s->b->nnodes; ++k) op->onU[k] = 0.;
-  FembemFarAdd(op->far, op->t, op->u, op->onT, op->onU);
+  PetscCall(FembemFarAdd(op->far, op->t, op->u, op->onT, op->onU));
   for (PetscInt k = 0; k < s->rows * s->b->n; ++k)
     if (s->tindex[k] >= 0) y[s->tindex[k]] += factor * op->onT[k];
   for (PetscInt k = 0; k < 2 * s->b->nnodes; ++k)
     if (s->uindex[k] >= 0) y[s->nt + s->uindex[k]] += factor * op->onU[k];
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The same numbers, to the last bit, on all ranks: they decide alike */
@@ -124,7 +126,7 @@ static PetscErrorCode SetRightHandSide(Operator *op)
   if (!rank) FembemSystemAddMass(s);
   for (PetscInt k = 0; k < s->rows * s->b->n; ++k) op->t[k] = s->tindex[k] < 0 ? s->t[k] : 0.;
   for (PetscInt k = 0; k < 2 * s->b->nnodes; ++k) op->u[k] = s->uindex[k] < 0 ? s->u[k] : 0.;
-  AddFar(op, -1., s->rhs);
+  PetscCall(AddFar(op, -1., s->rhs));
   PetscCall(SumAlike(op, s->rhs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -159,7 +161,7 @@ static PetscErrorCode Multiply(Mat A, Vec x, Vec y)
   PetscCall(VecGetArray(y, &out));
   for (PetscInt k = 0; k < s->rows * s->b->n; ++k) op->t[k] = s->tindex[k] < 0 ? 0. : in[s->tindex[k]];
   for (PetscInt k = 0; k < 2 * s->b->nnodes; ++k) op->u[k] = s->uindex[k] < 0 ? 0. : in[s->nt + s->uindex[k]];
-  AddFar(op, 1., out);
+  PetscCall(AddFar(op, 1., out));
   PetscCall(SumAlike(op, out));
   HoldMotions(s, in + s->nt, out + s->nt);
   PetscCall(VecRestoreArray(y, &out));

@@ -86,7 +86,7 @@ START_TEST(clusters_do_to_each_other_what_their_elements_do)
         AddPair(&s, i, j, t, u, exactT, exactU);
         ++pairs;
       }
-  FembemFarAdd(far, t, u, onT, onU);
+  CkOk(FembemFarAdd(far, t, u, onT, onU));
   CkOk(FembemDenseSum(PETSC_COMM_WORLD, nt, onT));
   CkOk(FembemDenseSum(PETSC_COMM_WORLD, nu, onU));
   CkOk(PetscPrintf(PETSC_COMM_WORLD,
