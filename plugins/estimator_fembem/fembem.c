@@ -15,14 +15,15 @@ typedef enum {
 } FembemSolve;
 static const char *const FembemSolves[] = {"auto", "galerkin", "none", NULL};
 
-/* Above some hundred boundary elements the dense system takes longer than the body: 7 s against 1 s for 1400 elements around 150,000
-   unknowns. Without it the estimate is as good on meshes as fine as these, but where the stress is singular C is .4 to .6, not .25 to .4 */
+/* auto is what it was when every system was dense, so that indicators stay what they were. Without a solve the estimate is as good on
+   meshes finer than these, but where the stress is singular C is .4 to .6, not .25 to .4 */
 #define FEMBEM_AUTO_ELEMENTS 300
 
 typedef struct {
   PetscInt     solve;     /* FembemSolve */
   PetscReal    tolerance; /* of the treecode; PETSC_DECIDE: by the order */
   PetscInt     max_elements;
+  FembemSolver solver;
   FembemStress stress; /* during an estimate */
 } Fembem;
 
@@ -58,26 +59,29 @@ static PetscErrorCode AbutEstimatorEstimate_Fembem(AbutEstimator est, AbutBody b
   AbutBoundary  *given;
   FembemBoundary boundary;
   PetscReal      young, poisson;
-  PetscInt       unknowns = 0;
+  FembemCost     cost = {.unknowns = 0};
 
   PetscFunctionBegin;
   PetscCall(AbutEstimatorGetData(est, &fembem));
   PetscCall(AbutBodyGetPlaneMaterial(body, &young, &poisson));
   PetscCall(AbutBodyGetBoundary(body, &given));
   PetscCall(FembemTakeOffForce(body, given));
-  PetscCall(FembemBoundaryCreate(comm, given, young, poisson, &boundary));
+  PetscCall(FembemBoundaryCreate(PetscObjectComm((PetscObject)body), given, young, poisson, &boundary));
   FembemTakeOffRigidMotion(&boundary);
   PetscCall(FembemRecoverTractions(&boundary));
   if (WantsGalerkin(fembem, given)) {
     AbutCheckInput(given->nnodes <= fembem->max_elements, comm,
                    "estimator_fembem_max_elements: %" PetscInt_FMT " boundary elements of order %" PetscInt_FMT
-                   " are more than %" PetscInt_FMT
-                   " of order 1; raise it (memory and time grow with the square and the cube), or give -estimator_fembem_solve none",
+                   " are more than %" PetscInt_FMT " of order 1; raise it, or give -estimator_fembem_solve none",
                    given->n, given->order, fembem->max_elements);
-    PetscCall(FembemSolveGalerkin(&boundary, &unknowns));
+    PetscCall(FembemSolveGalerkin(&boundary, fembem->solver, &cost));
+    PetscCall(PetscInfo(est,
+                        "%" PetscInt_FMT " unknowns, %" PetscInt_FMT " iterations, %" PetscInt_FMT
+                        " pairs evaluated and %zu numbers held on this rank\n",
+                        cost.unknowns, cost.iterations, cost.pairs, cost.numbers));
     FembemTakeOffRigidMotion(&boundary); /* where no displacement is given, the solution has any */
   }
-  PetscCall(AbutEstimatorSetUnknowns(est, unknowns));
+  PetscCall(AbutEstimatorSetUnknowns(est, cost.unknowns));
   PetscCall(FembemStressCreate(&boundary, TreeTolerance(fembem, given->order), &fembem->stress));
   PetscCall(AbutEstimatorCompareStress(est, body, FembemCompare, eta));
   PetscCall(FembemStressDestroy(&fembem->stress));
@@ -104,11 +108,24 @@ static PetscErrorCode AbutEstimatorSetFromOptions_Fembem(AbutEstimator est, Abut
                             "1e-2 of that",
                             &fembem->tolerance, &given));
   PetscCall(AbutOptionsInt(PetscOptionsObject, "-estimator_fembem_max_elements",
-                           "boundary elements, of order p each counted p times, up to which galerkin's dense system is solved",
+                           "boundary elements, of order p each counted p times, up to which galerkin's system is solved",
                            &fembem->max_elements, NULL));
+  PetscCall(AbutOptionsInt(PetscOptionsObject, "-estimator_fembem_dense_unknowns",
+                           "unknowns up to which galerkin's system is a dense matrix; above it is solved by iterations",
+                           &fembem->solver.dense, NULL));
+  PetscCall(AbutOptionsReal(PetscOptionsObject, "-estimator_fembem_solve_tolerance",
+                            "relative error of these iterations, and of what distant boundary elements do to each other",
+                            &fembem->solver.tolerance, NULL));
   AbutCheckInput(!given || (fembem->tolerance >= 0. && fembem->tolerance < 0.1), comm,
                  "estimator_fembem_tree_tolerance: %g is not in [0, 0.1); 1e-4 is ample", (double)fembem->tolerance);
   AbutCheckInput(fembem->max_elements > 0, comm, "estimator_fembem_max_elements: %" PetscInt_FMT " is not positive", fembem->max_elements);
+  AbutCheckInput(fembem->solver.dense >= 0, comm,
+                 "estimator_fembem_dense_unknowns: %" PetscInt_FMT
+                 " is below 0; give the unknowns of the largest dense system, for example 3000",
+                 fembem->solver.dense);
+  AbutCheckInput(fembem->solver.tolerance >= 1e-12 && fembem->solver.tolerance <= 1e-2, comm,
+                 "estimator_fembem_solve_tolerance: %g is not in [1e-12, 0.01]; give a relative error, for example 1e-6",
+                 (double)fembem->solver.tolerance);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -118,8 +135,11 @@ static PetscErrorCode AbutEstimatorView_Fembem(AbutEstimator est, PetscViewer vi
 
   PetscFunctionBegin;
   PetscCall(AbutEstimatorGetData(est, &fembem));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  boundary elements: solve %s (up to %" PetscInt_FMT "), treecode tolerance %g%s\n",
-                                   FembemSolves[fembem->solve], fembem->max_elements, (double)TreeTolerance(fembem, 1),
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "  boundary elements: solve %s (up to %" PetscInt_FMT ", above %" PetscInt_FMT
+                                   " unknowns by iterations to %g), treecode tolerance %g%s\n",
+                                   FembemSolves[fembem->solve], fembem->max_elements, fembem->solver.dense,
+                                   (double)fembem->solver.tolerance, (double)TreeTolerance(fembem, 1),
                                    fembem->tolerance == PETSC_DECIDE ? ", for each order above 1 divided by 100" : ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -146,7 +166,8 @@ static PetscErrorCode AbutEstimatorCreate_Fembem(AbutEstimator est)
   PetscCall(PetscNew(&fembem));
   fembem->solve        = FEMBEM_AUTO;
   fembem->tolerance    = PETSC_DECIDE;
-  fembem->max_elements = 4000;
+  fembem->max_elements = 100000;
+  fembem->solver       = (FembemSolver){.dense = 3000, .tolerance = 1e-6};
   PetscCall(AbutEstimatorSetData(est, fembem));
   PetscCall(AbutEstimatorSetOps(est, &ops));
   PetscCall(AbutEstimatorSetFeatures(est, ABUT_FEATURE_BODY_FORCE_CONSTANT | ABUT_FEATURE_FOUNDATION | ABUT_FEATURE_PLANE_STRESS |
@@ -166,8 +187,16 @@ static PetscErrorCode AbutEstimatorCreate_Fembem(AbutEstimator est)
                                               counted p times, `none` above
 .  -estimator_fembem_tree_tolerance <real>  - relative error of the treecode that evaluates stresses; 0 sums directly; by default 1e-4 at
                                               order 1, 1e-6, 1e-8 and 1e-10 at orders 2 to 4
--  -estimator_fembem_max_elements <4000>    - boundary elements up to which the dense system of `galerkin` is solved; one of order p counts
-                                              p times
+.  -estimator_fembem_max_elements <100000>  - boundary elements up to which `galerkin` is solved; one of order p counts p times
+.  -estimator_fembem_dense_unknowns <3000>  - unknowns of `galerkin` up to which its system is a dense matrix, which all ranks assemble and
+                                              factor together; above, GMRES takes memory in proportion to the boundary
+-  -estimator_fembem_solve_tolerance <1e-6> - above that, relative residual of GMRES and relative error of what distant boundary elements do
+                                              to each other, in [1e-12, 0.01]. With 1e-6 indicators of at least a twentieth of the largest
+                                              are within 1e-3 of those of the dense system, whose quadrature at order 1 is not better
+
+   Note:
+   All ranks hold the boundary. Each evaluates an equal part of the pairs of elements, and the stress in its own cells. `-info
+   :abut_estimator` prints unknowns, iterations, pairs of elements and numbers held.
 
    Level: developer
 

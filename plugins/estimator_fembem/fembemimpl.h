@@ -45,8 +45,17 @@ PETSC_INTERN PetscErrorCode FembemAddForce(AbutBody, PetscInt, const PetscReal[]
 /* Tractions that hold nodal forces in balance, where a displacement or a contact is prescribed */
 PETSC_INTERN PetscErrorCode FembemRecoverTractions(FembemBoundary *);
 
-/* Symmetric Galerkin boundary elements: replaces the displacements and tractions that are not given; the number of unknowns solved for */
-PETSC_INTERN PetscErrorCode FembemSolveGalerkin(FembemBoundary *, PetscInt *);
+/* Symmetric Galerkin boundary elements: replaces the displacements and tractions that are not given */
+typedef struct {
+  PetscInt  dense;     /* unknowns up to which the system is a dense matrix */
+  PetscReal tolerance; /* relative, above: of the residual, and of what distant elements do to each other */
+} FembemSolver;
+typedef struct {
+  PetscInt unknowns, iterations; /* no iterations: dense */
+  PetscInt pairs;                /* of elements, evaluated on this rank */
+  size_t   numbers;              /* held on this rank for the system */
+} FembemCost;
+PETSC_INTERN PetscErrorCode FembemSolveGalerkin(FembemBoundary *, FembemSolver, FembemCost *);
 
 /* What all pairs of elements have in common */
 #define FEMBEM_RULES      5

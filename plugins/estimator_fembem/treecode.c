@@ -1,5 +1,6 @@
 #include <petscdt.h>
 #include "fembemimpl.h"
+#include "clusters.h"
 
 /*
    Barnes and Hut's treecode (Nature 324, 1986) for the sums of FembemSourceAdd(): a binary tree over the boundary in its order, each
@@ -11,45 +12,17 @@
 #define FEMBEM_LEAF  8
 #define FEMBEM_THETA 0.5
 
-typedef struct {
-  PetscInt     first, end;  /* elements */
-  PetscInt     left, right; /* children, -1 in a leaf */
-  PetscComplex c;
-  PetscReal    R2; /* squared radius about c that holds all elements */
-} Cluster;
-
 struct _n_FembemTree {
-  PetscInt            n, nclusters, terms;
+  PetscInt            terms;
   const FembemSource *source; /* not owned */
-  Cluster            *cluster;
+  FembemClusters      clusters;
   PetscComplex       *moment; /* [4*terms*nclusters] for each k: Mp, Mq, (k+1) Mp, (k+1) N */
   PetscInt            npoints;
   PetscReal          *point, *weight; /* Gauss on [-1,1], exact for the moments */
   PetscReal          *legendre;       /* [ABUT_SIDE_NODES_MAX*npoints] the polynomials there */
 };
 
-static void ClusterBound(FembemTree tree, Cluster *cl)
-{
-  PetscReal lo[2] = {PETSC_MAX_REAL, PETSC_MAX_REAL}, hi[2] = {PETSC_MIN_REAL, PETSC_MIN_REAL};
-
-  for (PetscInt i = cl->first; i < cl->end; ++i) {
-    for (PetscInt k = 0; k < 2; ++k) {
-      const PetscComplex z    = k ? tree->source[i].e.b : tree->source[i].e.a;
-      const PetscReal    x[2] = {PetscRealPartComplex(z), PetscImaginaryPartComplex(z)};
-
-      for (PetscInt d = 0; d < 2; ++d) {
-        lo[d] = PetscMin(lo[d], x[d]);
-        hi[d] = PetscMax(hi[d], x[d]);
-      }
-    }
-  }
-  cl->c  = PetscCMPLX(0.5 * (lo[0] + hi[0]), 0.5 * (lo[1] + hi[1]));
-  cl->R2 = 0.;
-  for (PetscInt i = cl->first; i < cl->end; ++i)
-    cl->R2 = PetscMax(cl->R2, PetscMax(FembemAbsSquare(tree->source[i].e.a - cl->c), FembemAbsSquare(tree->source[i].e.b - cl->c)));
-}
-
-static void ClusterMoments(FembemTree tree, const Cluster *cl, PetscComplex m[])
+static void ClusterMoments(FembemTree tree, const FembemCluster *cl, PetscComplex m[])
 {
   for (PetscInt k = 0; k < 4 * tree->terms; ++k) m[k] = 0.;
   for (PetscInt i = cl->first; i < cl->end; ++i) {
@@ -79,23 +52,6 @@ static void ClusterMoments(FembemTree tree, const Cluster *cl, PetscComplex m[])
   }
 }
 
-static PetscInt ClusterBuild(FembemTree tree, PetscInt first, PetscInt end)
-{
-  const PetscInt id = tree->nclusters++, middle = (first + end) / 2;
-  Cluster       *cl = &tree->cluster[id];
-
-  cl->first = first;
-  cl->end   = end;
-  cl->left = cl->right = -1;
-  ClusterBound(tree, cl);
-  ClusterMoments(tree, cl, &tree->moment[4 * tree->terms * id]);
-  if (end - first > FEMBEM_LEAF) {
-    cl->left  = ClusterBuild(tree, first, middle);
-    cl->right = ClusterBuild(tree, middle, end);
-  }
-  return id;
-}
-
 /* Terms for a relative tolerance; the errors measured are below 0.1 theta^terms (10 terms: 1e-4, 16: 1.4e-6, 24: 4e-9) */
 static PetscInt TermsForTolerance(PetscReal tolerance)
 {
@@ -105,19 +61,22 @@ static PetscInt TermsForTolerance(PetscReal tolerance)
 PetscErrorCode FembemTreeCreate(PetscInt n, const FembemSource source[], PetscReal tolerance, FembemTree *newtree)
 {
   FembemTree     tree;
-  const PetscInt room = 2 * (2 * n / FEMBEM_LEAF + 1); /* leaves hold more than half of FEMBEM_LEAF */
+  FembemElement *e;
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&tree));
-  tree->n       = n;
+  PetscCall(PetscMalloc1(n, &e));
+  for (PetscInt i = 0; i < n; ++i) e[i] = source[i].e;
+  PetscCall(FembemClustersCreate(n, e, FEMBEM_LEAF, &tree->clusters));
+  PetscCall(PetscFree(e));
   tree->source  = source;
   tree->terms   = TermsForTolerance(tolerance);
   tree->npoints = (tree->terms + source[0].order + 3) / 2;
-  PetscCall(PetscMalloc5(room, &tree->cluster, 4 * (size_t)tree->terms * room, &tree->moment, tree->npoints, &tree->point, tree->npoints,
+  PetscCall(PetscMalloc4(4 * (size_t)tree->terms * tree->clusters.n, &tree->moment, tree->npoints, &tree->point, tree->npoints,
                          &tree->weight, ABUT_SIDE_NODES_MAX * tree->npoints, &tree->legendre));
   PetscCall(PetscDTGaussQuadrature(tree->npoints, -1., 1., tree->point, tree->weight));
   for (PetscInt g = 0; g < tree->npoints; ++g) FembemLegendreP(source[0].order, tree->point[g], &tree->legendre[ABUT_SIDE_NODES_MAX * g]);
-  ClusterBuild(tree, 0, n);
+  for (PetscInt i = 0; i < tree->clusters.n; ++i) ClusterMoments(tree, &tree->clusters.cluster[i], &tree->moment[4 * tree->terms * i]);
   *newtree = tree;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -140,8 +99,8 @@ static void ClusterAdd(FembemTree tree, PetscInt id, PetscComplex w, PetscComple
 
 static void TreeAdd(FembemTree tree, PetscInt id, PetscComplex z, PetscComplex *phi, PetscComplex *S)
 {
-  const Cluster     *cl = &tree->cluster[id];
-  const PetscComplex w  = z - cl->c;
+  const FembemCluster *cl = &tree->clusters.cluster[id];
+  const PetscComplex   w  = z - cl->c;
 
   if (cl->R2 < FEMBEM_THETA * FEMBEM_THETA * FembemAbsSquare(w)) {
     ClusterAdd(tree, id, w, phi, S);
@@ -163,7 +122,8 @@ PetscErrorCode FembemTreeDestroy(FembemTree *tree)
 {
   PetscFunctionBegin;
   if (!*tree) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree5((*tree)->cluster, (*tree)->moment, (*tree)->point, (*tree)->weight, (*tree)->legendre));
+  PetscCall(FembemClustersDestroy(&(*tree)->clusters));
+  PetscCall(PetscFree4((*tree)->moment, (*tree)->point, (*tree)->weight, (*tree)->legendre));
   PetscCall(PetscFree(*tree));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -31,6 +31,7 @@ static PetscReal SolveError(PetscInt order, const Field *field, const char text[
   AbutBoundary      given;
   FembemBoundary    b;
   FembemStress      stress;
+  FembemCost        cost;
   PetscReal         s[15], exact[3], error = 0., largest = 0.;
 
   BoundaryConditions(text, condition);
@@ -39,7 +40,8 @@ static PetscReal SolveError(PetscInt order, const Field *field, const char text[
   CkOk(FembemBoundaryCreate(PETSC_COMM_SELF, &given, field->young, field->poisson, &b));
   CkOk(FembemRecoverTractions(&b));
   Forget(&b);
-  CkOk(FembemSolveGalerkin(&b, unknowns));
+  CkOk(FembemSolveGalerkin(&b, dense_solver, &cost));
+  *unknowns = cost.unknowns;
   CkOk(FembemStressCreate(&b, 0., &stress));
   CkOk(FembemStressEvaluate(stress, 5, x, s));
   for (PetscInt i = 0; i < 5; ++i) {

@@ -13,13 +13,13 @@ static inline FembemStress BodyStress(AbutBody body, PetscBool galerkin, PetscRe
   FembemBoundary b;
   FembemStress   stress;
   PetscReal      young, poisson;
-  PetscInt       unknowns;
+  FembemCost     cost;
 
   CkOk(AbutBodyGetMaterial(body, &young, &poisson));
   CkOk(AbutBodyGetBoundary(body, &given));
   CkOk(FembemBoundaryCreate(PETSC_COMM_WORLD, given, young, poisson, &b));
   CkOk(FembemRecoverTractions(&b));
-  if (galerkin) CkOk(FembemSolveGalerkin(&b, &unknowns));
+  if (galerkin) CkOk(FembemSolveGalerkin(&b, dense_solver, &cost));
   CkOk(FembemStressCreate(&b, tolerance, &stress));
   CkOk(FembemBoundaryDestroy(&b));
   CkOk(AbutBoundaryDestroy(&given));
@@ -217,9 +217,10 @@ static inline FembemStress LayerReference(const Division *d)
   AbutBoundary   given;
   FembemBoundary b;
   FembemStress   stress;
+  FembemCost     cost;
   PetscReal      top[NTOP];
   const PetscInt high = (PetscInt)(1. / d->largest), n[4] = {4 * high, high, TopNodes(d, top), high};
-  PetscInt       i = 0, unknowns;
+  PetscInt       i = 0;
 
   CkOk(BoundaryAllocate(n[0] + n[1] + n[2] + n[3], 1, d->order, &given));
   for (PetscInt side = 0; side < 4; ++side) {
@@ -236,7 +237,7 @@ static inline FembemStress LayerReference(const Division *d)
   CkOk(BoundaryPlaceNodes(&given));
   ProjectPressure(&given);
   CkOk(FembemBoundaryCreate(PETSC_COMM_SELF, &given, 2.1e5, 0.3, &b));
-  CkOk(FembemSolveGalerkin(&b, &unknowns));
+  CkOk(FembemSolveGalerkin(&b, dense_solver, &cost));
   CkOk(FembemStressCreate(&b, 1e-10, &stress));
   CkOk(FembemBoundaryDestroy(&b));
   CkOk(BoundaryFree(&given));

@@ -198,6 +198,9 @@ static inline void BoundaryFill(const Field *f, const AbutConditionType conditio
   }
 }
 
+/* Galerkin with a dense system, however large */
+static const FembemSolver dense_solver = {.dense = PETSC_MAX_INT, .tolerance = 1e-6};
+
 /* Two letters a side: below, right, above, left, then a hole; t, u, c: traction, displacement, contact given for a component */
 static inline void BoundaryConditions(const char text[16], AbutConditionType condition[16])
 {
