@@ -99,6 +99,10 @@ study-compare: all
 study-estimators: all
 	@$(PYTHON) examples/studies/estimators/estimators.py --abut $(B)/bin/abut --out out $(PLUGIN:%=--plugin %)
 
+# what 1 to 16 ranks send and do, phase by phase, and what that makes of 10^4: see examples/studies/scaling
+study-scaling: all
+	@$(PYTHON) examples/studies/scaling/scaling.py --abut $(B)/bin/abut --out out
+
 # the paper's Figs 4 to 10, some 35 runs: see docs/paper.md
 study-paper: all
 	@$(PYTHON) examples/studies/paper/paper.py --abut $(B)/bin/abut --out out/paper
@@ -165,5 +169,5 @@ VERSION = $(shell sed -n 's/^version: *//p' CITATION.cff)
 clean:
 	rm -rf $(B) out
 FORCE:
-.PHONY: all run study-loops study-shares study-accuracy study-paper study-cost study-compare study-estimators test test-long suite matrix fuzz check asan coverage memcheck setup deps deps-dev format lint install clean FORCE
+.PHONY: all run study-loops study-shares study-accuracy study-paper study-cost study-compare study-estimators study-scaling test test-long suite matrix fuzz check asan coverage memcheck setup deps deps-dev format lint install clean FORCE
 .DELETE_ON_ERROR:

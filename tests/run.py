@@ -48,6 +48,12 @@ def unit_tests(build, quick):
             yield f"{source} on {n}", (["mpiexec", "-n", str(n)] if n > 1 else []) + [program]
 
 
+def limit_of(source, limit):
+    """For one test: as its file says, limit: 7200 s"""
+    said = re.search(r"limit: (\d+) s", head(source)) if os.path.exists(source) else None
+    return int(said.group(1)) if said else limit
+
+
 def measures(source):
     with open(source) as f:
         return bool(re.search(r"\b(case|CkCase)\(", f.read()))
@@ -137,7 +143,7 @@ def main():
     measured = collections.defaultdict(list)
     start = time.time()
     with concurrent.futures.ThreadPoolExecutor(args.j) as pool:
-        for name, status, seconds, output in pool.map(lambda t: run(t, args.limit), tests):
+        for name, status, seconds, output in pool.map(lambda t: run(t, limit_of(t[0].split(":")[0], args.limit)), tests):
             verdict = {0: "passed", SKIPPED: "skipped"}.get(status, "FAILED")
             count[verdict] += 1
             for case, *row in cases.read(output):

@@ -303,6 +303,7 @@ PetscErrorCode AbutSceneSetFromOptions(AbutScene scene)
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(scene, ABUTSCENE_CLASSID, 1);
+  PetscCall(AbutScenePhaseBegin_Private(ABUT_TIME_SETUP));
   PetscObjectOptionsBegin((PetscObject)scene);
   PetscCall(AbutSceneReadAllNames_Private(scene, PetscOptionsObject, names));
   PetscCall(AbutOptionsBool(PetscOptionsObject, "-scene_interleave", "One sweep and one adaptation a cycle", &scene->interleave, NULL));
@@ -339,5 +340,6 @@ PetscErrorCode AbutSceneSetFromOptions(AbutScene scene)
   PetscCall(AbutRecorderSetFromOptions(scene->recorder));
   PetscCall(AbutRecorderSetPairs(scene->recorder, scene->iface, scene->npairs, scene->pair));
   PetscCall(AbutSceneCheckpointFromOptions_Private(scene));
+  PetscCall(PetscLogStagePop());
   PetscFunctionReturn(PETSC_SUCCESS);
 }

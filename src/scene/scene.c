@@ -55,6 +55,7 @@ PetscErrorCode AbutSceneSetUp(AbutScene scene)
   PetscValidHeaderSpecific(scene, ABUTSCENE_CLASSID, 1);
   if (scene->setupcalled) PetscFunctionReturn(PETSC_SUCCESS);
   scene->setupcalled = PETSC_TRUE;
+  PetscCall(AbutScenePhaseBegin_Private(ABUT_TIME_SETUP));
   PetscCall(AbutOptionsCheckAllRead(PetscObjectComm((PetscObject)scene), PETSC_FALSE));
   for (PetscInt i = 0; i < scene->nbodies; ++i) PetscCall(AbutBodyCheck(scene->body[i]));
   for (PetscInt i = 0; i < scene->neffects; ++i) PetscCall(AbutEffectCheck(scene->effect[i]));
@@ -70,7 +71,8 @@ PetscErrorCode AbutSceneSetUp(AbutScene scene)
   PetscCall(AbutInterfaceSetUp(scene->iface));
   PetscCall(AbutSceneSetLinearTolerance_Private(scene));
   PetscCall(AbutSceneWarnOfOverlap_Private(scene));
-  PetscCall(AbutSceneClock_Private(scene, ABUT_TIME_SETUP));
+  PetscCall(AbutScenePhaseNext_Private(scene, ABUT_TIME_SETUP, ABUT_TIME_SETUP));
+  PetscCall(PetscLogStagePop());
   PetscCall(PetscObjectViewFromOptions((PetscObject)scene, NULL, "-scene_view"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -2,18 +2,6 @@
 
 /* The combined algorithm, Fig. 2 of the paper: solve, estimate, mark, refine, until no cell is above the threshold */
 
-/* Seconds since the last call go to one account */
-PetscErrorCode AbutSceneClock_Private(AbutScene scene, AbutTime account)
-{
-  PetscLogDouble now;
-
-  PetscFunctionBegin;
-  PetscCall(PetscTime(&now));
-  scene->seconds[account] += now - scene->mark;
-  scene->mark = now;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The trace of this cycle's meshes: the start, or the last trace at the new nodes */
 static PetscErrorCode AbutSceneTrace_Private(AbutScene scene)
 {
@@ -246,15 +234,15 @@ static PetscErrorCode AbutSceneCycle_Private(AbutScene scene, PetscBool *marks[]
   PetscFunctionBegin;
   PetscCall(AbutSceneTrace_Private(scene));
   PetscCall(AbutSceneLoosen_Private(scene, &rtol, &loose));
-  PetscCall(AbutSceneClock_Private(scene, ABUT_TIME_SETUP));
+  PetscCall(AbutScenePhaseNext_Private(scene, ABUT_TIME_SETUP, ABUT_TIME_SOLVE));
   while (again) {
     PetscCall(AbutSceneFreeMarks_Private(scene, marks));
     PetscCall(AbutSceneLoop_Private(scene, converged));
-    PetscCall(AbutSceneClock_Private(scene, ABUT_TIME_SOLVE));
+    PetscCall(AbutScenePhaseNext_Private(scene, ABUT_TIME_SOLVE, ABUT_TIME_ESTIMATE));
     PetscCall(AbutSceneEstimate_Private(scene, norm));
     PetscCall(AbutSceneMark_Private(scene, norm, marks, adapt, nmarked));
-    PetscCall(AbutSceneClock_Private(scene, ABUT_TIME_ESTIMATE));
     again = (PetscBool)(loose && *adapt != ABUT_ADAPT_REFINED && !strcmp(scene->verdict, "converged"));
+    PetscCall(AbutScenePhaseNext_Private(scene, ABUT_TIME_ESTIMATE, again ? ABUT_TIME_SOLVE : ABUT_TIME_OUTPUT));
     if (again) PetscCall(SNESSetTolerances(scene->snes, 0., rtol, 0., PETSC_DEFAULT, PETSC_DEFAULT));
     loose = PETSC_FALSE;
   }
@@ -295,6 +283,7 @@ PetscErrorCode AbutSceneSolve(AbutScene scene)
 
   PetscFunctionBegin;
   PetscCall(AbutSceneSetUp(scene));
+  PetscCall(AbutScenePhaseBegin_Private(ABUT_TIME_SETUP));
   PetscCall(AbutScenePrintGamma_Private(scene));
   PetscCall(AbutScenePrintHeader_Private(scene));
   PetscCall(AbutScenePrintStep_Private(scene));
@@ -307,13 +296,14 @@ PetscErrorCode AbutSceneSolve(AbutScene scene)
     PetscCall(AbutSceneRecordTimes_Private(scene));
     PetscCall(AbutScenePrintCycle_Private(scene, nmarked));
     PetscCall(AbutSceneOutput_Private(scene, (PetscBool)(ends || next)));
-    PetscCall(AbutSceneClock_Private(scene, ABUT_TIME_OUTPUT));
+    PetscCall(AbutScenePhaseNext_Private(scene, ABUT_TIME_OUTPUT, ABUT_TIME_ADAPT));
     if (next) PetscCall(AbutSceneNextStep_Private(scene));
     else if (!ends && adapt == ABUT_ADAPT_REFINED) PetscCall(AbutSceneAdapt_Private(scene, marks));
     PetscCall(AbutSceneFreeMarks_Private(scene, marks));
-    PetscCall(AbutSceneClock_Private(scene, ABUT_TIME_ADAPT));
+    PetscCall(AbutScenePhaseNext_Private(scene, ABUT_TIME_ADAPT, ABUT_TIME_SETUP));
     if (!ends) PetscCall(AbutSceneCheckpoint_Private(scene));
   }
+  PetscCall(PetscLogStagePop());
   PetscCall(AbutSceneRecordTimes_Private(scene));
   PetscCall(AbutSceneRecordRatio_Private(scene));
   PetscCall(AbutRecorderWrite(scene->recorder));

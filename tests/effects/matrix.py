@@ -148,6 +148,14 @@ def read(name):
         return f.read()
 
 
+def total(counts):
+    """Of all stages of a log together"""
+    every = collections.Counter()
+    for name, count in counts:
+        every[name.strip()] += int(count)
+    return dict(every)
+
+
 class Matrix:
     """The program of a build folder, what it is given, and what its runs left behind, each run once"""
 
@@ -180,8 +188,8 @@ class Matrix:
             written = {name: read(os.path.join(folder, name)) for name in os.listdir(folder) if name not in self.inputs}
         linker = "".join(written.pop(name) for name in sorted(written) if name.startswith("linker"))
         log, record = written.pop("log"), [line for line in written.get("record", "").splitlines() if not TIMES.match(line)]
-        events = {name: int(count) for name, count in re.findall(r"^(\w+) +(\d+) 1\.0 ", log, re.M)}
-        objects = {name.strip(): int(count) for name, count in re.findall(r"^ +(\w[\w ]*?) +(\d+) +\d+ *$", log, re.M)}
+        events = total(re.findall(r"^(\w+) +(\d+) 1\.0 ", log, re.M))
+        objects = total(re.findall(r"^ +(\w[\w ]*?) +(\d+) +\d+ *$", log, re.M))
         (memory,) = re.findall(r"Maximum memory PetscMalloc\(\)ed (\d+)", done.stdout)
         libraries = {os.path.basename(path) for path in re.findall(r"calling init: (\S+)", linker)}
         calls = re.findall(r"binding file (\S+) \[0\] to (\S+) \[0\]: normal symbol `(\w+)'", linker)

@@ -23,6 +23,13 @@ def test_solvers_agree():
     same_answer(["solver/direct.opts", "solver/hypre.opts", "solver/gamg.opts"], 1e-6)
 
 
+def test_machines_agree():
+    names = ["machine/node.opts", "machine/cluster.opts"]
+    force = [run(LAYERS, *SMALL, *options(name), "-snes_type ddactive", ranks=2)["pair.mid.force"] for name in names]
+    direct = run(LAYERS, *SMALL, "-estimator_type zz -snes_type ddactive")["pair.mid.force"]
+    assert all(abs(one / direct - 1) < 1e-6 for one in force), (force, direct)
+
+
 def test_loops_agree():
     same_answer(["loop/automatic.opts", "loop/anderson.opts", "loop/ngmres.opts", "loop/qn.opts"], 1e-6)
 

@@ -151,4 +151,6 @@ PETSC_INTERN PetscErrorCode AbutSceneSetTolerance_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutSceneSetLinearTolerance_Private(AbutScene);
 PETSC_INTERN PetscReal      AbutSceneLoopTolerance_Private(AbutScene);
 PETSC_INTERN PetscErrorCode AbutSceneViewTolerance_Private(AbutScene, PetscViewer);
-PETSC_INTERN PetscErrorCode AbutSceneClock_Private(AbutScene, AbutTime);
+/* phases.c */
+PETSC_INTERN PetscErrorCode AbutScenePhaseBegin_Private(AbutTime);
+PETSC_INTERN PetscErrorCode AbutScenePhaseNext_Private(AbutScene, AbutTime, AbutTime);
