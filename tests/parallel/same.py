@@ -4,7 +4,7 @@ import math, os, re, tempfile, xml.etree.ElementTree as xml
 from abut import read_csv, run
 
 # What says nothing of the answer
-OTHER = r"time\.|memory\.|body\.\w+\.imbalance"
+OTHER = r"time\.|memory\.|body\.\w+\.(imbalance|ranks)"
 # Keys that may be nothing but round-off: what is below this on both numbers of ranks is the same
 ROUNDOFF = r"check\.|residual\.|error\.(linear|loop)|pair\.\w+\.(balance|complementarity|penetration_max)"
 NOTHING = 1e-10
@@ -72,5 +72,6 @@ def off(one, other, key):
 
 def farthest_key(one, other):
     """By how much two records differ most, and in which key"""
-    assert one.keys() == other.keys(), one.keys() ^ other.keys()
-    return max((off(one[key], other[key], key), key) for key in one if not re.match(OTHER, key))
+    keys, others = ({key for key in record if not re.match(OTHER, key)} for record in (one, other))
+    assert keys == others, keys ^ others
+    return max((off(one[key], other[key], key), key) for key in keys)

@@ -8,7 +8,7 @@ sys.path.append(os.path.join(ROOT, "examples", "stack"))
 import stack
 
 EXACT = "-snes_rtol 1e-12"
-WAYS = ("",)  # of bodies and ranks: all bodies on all ranks
+WAYS = ("", "-scene_split")  # all bodies on all ranks, and each on ranks of its own
 RANKS = (7, 16)
 ALL = (2, 3, 4, 7, 13, 16)
 

@@ -1,5 +1,5 @@
 """What many ranks cost, in counts: iterations of the linear solvers, cells of a rank, bytes that a rank sends"""
-import functools, os, subprocess, tempfile
+import collections, functools, os, subprocess, tempfile
 
 from abut import LAYERS, ROOT, case, read_csv, run
 
@@ -55,12 +55,11 @@ def test_adapted_meshes_are_cut_evenly():
 
 
 @functools.cache
-def tally():
+def counter():
     """The library that counts, made once"""
-    folder = tempfile.mkdtemp(prefix="tally")
-    library = os.path.join(folder, "libtally.so")
-    source = os.path.join(ROOT, "tests", "parallel", "tally.c")
-    subprocess.run(["mpicc", "-std=gnu99", "-Wall", "-Wextra", "-Werror", "-fPIC", "-shared", source, "-o", library], check=True)
+    library = os.path.join(tempfile.mkdtemp(prefix="count"), "libcount.so")
+    source = os.path.join(ROOT, "examples", "studies", "scaling", "count.c")
+    subprocess.run(["mpicc", "-std=gnu99", "-Wall", "-Wextra", "-Werror", "-fPIC", "-shared", source, "-o", library, "-ldl"], check=True)
     return library
 
 
@@ -69,15 +68,17 @@ def sent(ranks, cells, sweeps, rtol):
     loop = f"-snes_type ddneumann -snes_ddneumann_gamma 0.02 -snes_ddneumann_start zero -snes_max_it {sweeps}"
     mesh = " ".join(f"-{body}_mesh_cells {4 * cells},{cells} -{body}_ksp_rtol {rtol}" for body in BODIES)
     with tempfile.TemporaryDirectory() as folder:
-        os.environ.update(LD_PRELOAD=tally(), ABUT_TALLY=f"{folder}/tally")
+        os.environ.update(LD_PRELOAD=counter(), ABUT_COUNTS=f"{folder}/counts")
         try:
             record = run(LAYERS, UNIFORM, mesh, MULTIGRID, loop, ranks=ranks, expect=2)
         finally:
             del os.environ["LD_PRELOAD"]
-        with open(f"{folder}/tally") as f:
-            bytes_ = [[float(word) for word in line.split()] for line in f]
-    assert record["verdict"] == "max_iterations" and len(bytes_) == ranks
-    return [single for single, _ in bytes_], max(all_ for _, all_ in bytes_), record["sweeps"], sum(per_body(record, "ksp_its"))
+        single, together = collections.Counter(), collections.Counter()
+        for row in read_csv(f"{folder}/counts"):
+            single[row["rank"]] += row["bytes"]
+            together[row["rank"]] += row["reduced"] + row["gathered"]
+    assert record["verdict"] == "max_iterations" and len(single) == ranks
+    return [single[rank] for rank in range(ranks)], max(together.values()), record["sweeps"], sum(per_body(record, "ksp_its"))
 
 
 def per_sweep(ranks, cells):
