@@ -128,6 +128,25 @@ int MPI_Allgatherv(const void *b, int n, MPI_Datatype t, void *all, const int m[
   return PMPI_Allgatherv(b, n, t, all, m, at, u, comm);
 }
 
+int MPI_Iallgatherv(const void *b, int n, MPI_Datatype t, void *all, const int m[], const int at[], MPI_Datatype u, MPI_Comm comm,
+                    MPI_Request *r)
+{
+  sent[1] += b == MPI_IN_PLACE ? 0. : Bytes(n, t);
+  return PMPI_Iallgatherv(b, n, t, all, m, at, u, comm, r);
+}
+
+int MPI_Iallgather(const void *b, int n, MPI_Datatype t, void *all, int m, MPI_Datatype u, MPI_Comm comm, MPI_Request *r)
+{
+  sent[1] += Bytes(m, u);
+  return PMPI_Iallgather(b, n, t, all, m, u, comm, r);
+}
+
+int MPI_Ibcast(void *b, int n, MPI_Datatype t, int root, MPI_Comm comm, MPI_Request *r)
+{
+  sent[1] += Bytes(n, t);
+  return PMPI_Ibcast(b, n, t, root, comm, r);
+}
+
 int MPI_Finalize(void)
 {
   double *all = NULL;
