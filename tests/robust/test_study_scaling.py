@@ -6,14 +6,27 @@ from abut import PROGRAM, ROOT
 
 STUDY = os.path.join(ROOT, "examples", "studies", "scaling")
 sys.path[:0] = [STUDY, os.path.dirname(STUDY)]
-COUNTS = "messages bytes reductions gathers gathered steps".split()
+COUNTS = "messages bytes multigrid reductions gathers gathered steps".split()
 STAGES = """
 int PetscLogStageRegister(const char name[], int *stage) { static int n; (void)name; *stage = ++n; return 0; }
 int PetscLogStagePush(int stage) { (void)stage; return 0; }
 int PetscLogStagePop(void) { return 0; }
 """
+EXCHANGE = """
+#include <mpi.h>
+void Exchange(int rank, int size)
+{
+  int         x = 0, y;
+  MPI_Request request;
+
+  MPI_Irecv(&y, 1, MPI_INT, (rank + size - 1) % size, 4, MPI_COMM_WORLD, &request);
+  MPI_Send(&x, 1, MPI_INT, (rank + 1) % size, 4, MPI_COMM_WORLD);
+  MPI_Wait(&request, MPI_STATUS_IGNORE);
+}
+"""
 TALK = """
 #include <mpi.h>
+void Exchange(int, int);
 int PetscLogStageRegister(const char[], int *), PetscLogStagePush(int), PetscLogStagePop(void);
 int main(int argc, char **argv)
 {
@@ -47,6 +60,7 @@ int main(int argc, char **argv)
   }
   MPI_Request_free(&both[0]);
   MPI_Request_free(&both[1]);
+  Exchange(rank, size);
   PetscLogStagePush(stage[1]); /* a stage in a stage */
   MPI_Allreduce(x, y, 4, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
   MPI_Allreduce(x, y, 4, MPI_DOUBLE, MPI_SUM, MPI_COMM_SELF); /* alone: none */
@@ -100,7 +114,8 @@ def test_every_message_of_a_program_is_counted_in_its_phase():
     n = 3
     with tempfile.TemporaryDirectory() as folder:
         stages = compile_c(folder, "libstages.so", STAGES, "-fPIC", "-shared")
-        talk = compile_c(folder, "talk", TALK, stages, f"-Wl,-rpath,{folder}")
+        multigrid = compile_c(folder, "libHYPRE_test.so", EXCHANGE, "-fPIC", "-shared")
+        talk = compile_c(folder, "talk", TALK, stages, multigrid, f"-Wl,-rpath,{folder}")
         counter, path = os.path.join(folder, "libcount.so"), os.path.join(folder, "counts")
         flags = "-std=gnu99 -Wall -Wextra -Werror -O2 -fPIC -shared".split()
         done = subprocess.run(["mpicc", *flags, os.path.join(STUDY, "count.c"), "-o", counter, "-ldl"], capture_output=True, text=True)
@@ -111,9 +126,9 @@ def test_every_message_of_a_program_is_counted_in_its_phase():
         rows = rows_of(path)
     steps = math.ceil(math.log2(n))
     expected = {
-        "Main": [0] * 6,
-        "Talk": [3 + 4 + 1, 3 * 80 + 4 * 20 + 7, 0, 0, 0, 0],
-        "Gather": [0, 0, 4, 2, 4 * 2 * n + 4 * n * (n + 1) // 2, 6 * steps],
+        "Main": [0] * 7,
+        "Talk": [3 + 4 + 1 + 1, 3 * 80 + 4 * 20 + 7 + 4, 1, 0, 0, 0, 0],
+        "Gather": [0, 0, 0, 4, 2, 4 * 2 * n + 4 * n * (n + 1) // 2, 6 * steps],
     }
     assert [int(row["reduced"]) for row in rows if row["phase"] == "Gather"] == [4 * 8 + 4] * n
     assert [(row["rank"], row["phase"]) for row in rows] == [(str(r), phase) for r in range(n) for phase in expected]
@@ -195,8 +210,8 @@ def invented(law, work):
     for n in 10**4, 10**5, 10**6:
         for p in 1, 2, 4, 8, 16:
             row = dict(ranks=p, unknowns=n, contact=round(n**0.5), its=100, cycles=10, verdict="converged")
-            rows = [dict(row, phase=phase, bytes_max=0, steps_max=0, gathered_max=0, messages_max=0, work_max=n / p) for phase in PHASES]
-            rows[1].update(messages_max=100 * law(p, n), work_max=work(p, n))
+            rows = [dict(row, phase=phase, bytes_max=0, steps_max=0, gathered_max=0, multigrid_max=0, others_max=0, work_max=n / p) for phase in PHASES]
+            rows[1].update(others_max=100 * law(p, n), work_max=work(p, n))
             found[Case("strong", float(n), p, "together")] = rows
     return found
 
@@ -206,7 +221,7 @@ def test_the_model_finds_a_law_and_what_it_leads_to():
     from model import Model, State
 
     model = Model(invented(lambda p, n: 7 * math.log2(p) + 0.5 * (p - 1), lambda p, n: n / p + 1e-3 * n**1.5))
-    assert abs(model.count("Sweeps", "messages", State(10**4, 10**9, 0.0), 1) / (7 * math.log2(1e4) + 0.5 * 9999) - 1) < 1e-6
+    assert abs(model.count("Sweeps", "others", State(10**4, 10**9, 0.0), 1) / (7 * math.log2(1e4) + 0.5 * 9999) - 1) < 1e-6
     n = 10**4  # 5 n = 5e4 of cells, m^3 = 1e3
     lost = lambda p: (5 * n + 1e3) / (p * (5 * n / p + 1e3)) < 0.5
     ranks, (phase, cause) = model.half(n, 0.0, 1.0)

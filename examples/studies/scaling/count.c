@@ -3,6 +3,7 @@
    When MPI ends, a CSV file of the name in ABUT_COUNTS has one line for each rank and phase:
 
      messages, bytes   sent to other ranks: MPI_Send and its kin, persistent ones each time they start
+     multigrid         those of the messages that a library sends whose name has HYPRE in it
      reductions        collective calls whose data do not grow with the ranks: Allreduce, Bcast, Scan, Barrier, ..., and new communicators
      reduced           bytes of them
      gathers, gathered those whose data do: Allgather, Alltoall, ...; bytes that arrive on this rank
@@ -22,6 +23,7 @@
 enum {
   MESSAGES,
   BYTES,
+  MULTIGRID,
   REDUCTIONS,
   REDUCED,
   GATHERS,
@@ -117,10 +119,14 @@ static int Other(int rank, MPI_Comm comm)
   return rank != MPI_PROC_NULL && rank != me;
 }
 
-static void Message(double bytes)
+/* caller: an address in what called MPI */
+static void Message(double bytes, const void *caller)
 {
+  Dl_info where;
+
   Phase()[MESSAGES] += 1;
   Phase()[BYTES] += bytes;
+  if (dladdr(caller, &where) && where.dli_fname && strstr(where.dli_fname, "HYPRE")) Phase()[MULTIGRID] += 1;
 }
 
 static void Collective(int what, double bytes, MPI_Comm comm)
@@ -171,12 +177,12 @@ static void Keep(MPI_Request request, double bytes)
   persistent[at].bytes   = bytes;
 }
 
-static void Started(int n, const MPI_Request request[])
+static void Started(int n, const MPI_Request request[], const void *caller)
 {
   for (int i = 0; i < n; ++i) {
     const size_t at = Place(request[i]);
 
-    if (persistent[at].request && persistent[at].bytes >= 0) Message(persistent[at].bytes);
+    if (persistent[at].request && persistent[at].bytes >= 0) Message(persistent[at].bytes, caller);
   }
 }
 
@@ -194,7 +200,7 @@ static void Started(int n, const MPI_Request request[])
     return error; \
   }
 #define SENT \
-  if (Other(to, comm)) Message(Size(n, type))
+  if (Other(to, comm)) Message(Size(n, type), __builtin_return_address(0))
 #define REDUCE Collective(REDUCTIONS, Size(n, type), comm)
 #define PLAIN  Collective(REDUCTIONS, 0, comm)
 
@@ -215,8 +221,8 @@ WRAP(Send_init, (const void *x, int n, MPI_Datatype type, int to, int tag, MPI_C
      Keep(*r, Other(to, comm) ? Size(n, type) : -1))
 WRAP(Recv_init, (void *x, int n, MPI_Datatype type, int from, int tag, MPI_Comm comm, MPI_Request *r), (x, n, type, from, tag, comm, r), ,
      Keep(*r, -1))
-WRAP(Start, (MPI_Request * r), (r), Started(1, r), )
-WRAP(Startall, (int n, MPI_Request r[]), (n, r), Started(n, r), )
+WRAP(Start, (MPI_Request * r), (r), Started(1, r, __builtin_return_address(0)), )
+WRAP(Startall, (int n, MPI_Request r[]), (n, r), Started(n, r, __builtin_return_address(0)), )
 WRAP(Sendrecv,
      (const void *x, int n, MPI_Datatype type, int to, int tag, void *y, int m, MPI_Datatype kind, int from, int mark, MPI_Comm comm,
       MPI_Status *s),
@@ -281,7 +287,7 @@ static void Write(const double all[], int size)
   FILE       *file = path ? fopen(path, "w") : NULL;
 
   if (!file) return;
-  fprintf(file, "rank,phase,messages,bytes,reductions,reduced,gathers,gathered,steps,work\n");
+  fprintf(file, "rank,phase,messages,bytes,multigrid,reductions,reduced,gathers,gathered,steps,work\n");
   for (int r = 0; r < size; ++r)
     for (int p = 0; p < nphases; ++p) {
       fprintf(file, "%d,%s", r, names[p]);

@@ -4,7 +4,7 @@ bandwidth.
 A count of the rank that has most of it is a sum of terms, each above zero; which ones is decided by the Bayesian information criterion,
 among those that the algorithm can have. Seconds are
 
-  work + latency (messages + steps) + (bytes sent + bytes gathered)/bandwidth
+  work + latency (messages of multigrid and others + steps) + (bytes sent + bytes gathered)/bandwidth
 
 of that rank: nothing overlaps, nothing waits beyond that, and no message slows another one down.
 """
@@ -31,10 +31,14 @@ def log2(x):
 
 
 TERMS = {
-    "messages": {  # multigrid levels, on which ranks have neighbours; scatters from those that own the boundary to all
+    "multigrid": {  # messages: on every level a rank has neighbours, on the coarse ones many
         "near": lambda s: min(s.p - 1.0, 8.0),
         "log p": lambda s: log2(s.p),
         "log p log n": lambda s: log2(s.p) * log2(s.n),
+    },
+    "others": {  # the cells' neighbours; what owns a part of the boundary sends it to all
+        "near": lambda s: min(s.p - 1.0, 8.0),
+        "log p": lambda s: log2(s.p),
         "p": lambda s: s.p - 1.0,
     },
     "bytes": {  # sides of the parts; coarse levels; the boundary, sent to all
@@ -53,6 +57,7 @@ TERMS = {
         "m^3": lambda s: float(s.m) ** 3,
     },  # none that grows with p: more ranks than cores share caches, which looks like that
 }
+MESSAGES = ("multigrid", "others")
 CAUSE = {"n/p": "share", "1": "fixed", "m": "boundary", "m^2": "replicated", "m^3": "replicated"}  # of work
 GROWTH = {"1": lambda s: 1.0, "log n": lambda s: log2(s.n), "log p": lambda s: log2(s.p)}  # of iterations and meshes
 
@@ -114,7 +119,7 @@ class Model:
         for phase in PHASES:
             for name, c in self.coefficients[phase, "work"].items():
                 found[phase, CAUSE[name]] += c * TERMS["work"][name](state)
-            found[phase, "messages"] += latency * self.count(phase, "messages", state)
+            found[phase, "messages"] += latency * sum(self.count(phase, count, state) for count in MESSAGES)
             found[phase, "steps"] += latency * self.count(phase, "steps", state)
             found[phase, "bytes"] += (self.count(phase, "bytes", state) + self.count(phase, "gathered", state)) / bandwidth
         return found

@@ -4,11 +4,12 @@ import os, sys
 HERE = os.path.dirname(os.path.abspath(__file__))
 STUDIES = os.path.dirname(HERE)
 sys.path[:0] = [HERE, os.path.dirname(STUDIES), STUDIES]
-from model import CAUSES, PHASES, TERMS, Model  # noqa: E402
+from model import CAUSES, MESSAGES, PHASES, TERMS, Model  # noqa: E402
 from picture import legend_above, plt, save  # noqa: E402
 
 RANKS = (100, 1000, 10000)
 SIZES = (1e6, 1e7, 1e8, 1e9)  # unknowns; PETSc's 32-bit indices end at 2.1e9
+NAMES = {"multigrid": "messages of multigrid", "others": "other messages", "bytes": "bytes", "steps": "steps", "gathered": "bytes gathered", "work": "work"}
 SAME = ("force", "pressure", "energy", "estimate")
 
 
@@ -23,7 +24,7 @@ def solved(series, mode, kind=None):
 
 
 def total(rows, name):
-    return sum(float(row_of(rows, phase)[name] or 0) for phase in PHASES)
+    return sum(float(row_of(rows, phase)[name]) for phase in PHASES)
 
 
 def number(x):
@@ -34,7 +35,9 @@ def seconds(rows, phase=None):
     """Where there is a core for every rank"""
     if rows[0]["oversubscribed"] == "yes":
         return "oversubscribed"
-    return f"{total(rows, 'seconds') if phase is None else float(row_of(rows, phase)['seconds'] or 0):.3g}"
+    if not row_of(rows, phase or PHASES[0])["seconds"]:
+        return "not taken"
+    return f"{total(rows, 'seconds') if phase is None else float(row_of(rows, phase)['seconds']):.3g}"
 
 
 def imbalance(row, ranks):
@@ -65,17 +68,17 @@ def runs_table(series):
 
 def phases_table(series):
     """One line a phase of the largest strong series and of the weak one, on the fewest and on the most ranks that have messages"""
-    yield "| series | unknowns | ranks | phase | seconds | work s, largest | imbalance | messages | kB | reductions | gathers | kB gathered |"
-    yield "|---" * 12 + "|"
+    yield "| series | unknowns | ranks | phase | seconds | work s, largest | imbalance | messages | of multigrid | kB | reductions | gathers | kB gathered |"
+    yield "|---" * 13 + "|"
     largest = max((case.size for case in series if case.series == "strong"), default=None)
     for kind in "strong", "weak":
         chosen = [case for case in series if case.series == kind and case.ranks > 1 and (kind == "weak" or case.size == largest)]
         for case in chosen[:1] + chosen[-1:]:
             for phase in PHASES:
                 row = row_of(series[case], phase)
-                each = {name: float(row[name]) / case.ranks for name in ("messages", "bytes", "reductions", "gathers", "gathered")}
+                each = {name: float(row[name]) / case.ranks for name in "messages multigrid bytes reductions gathers gathered".split()}
                 yield (f"| {kind} | {int(row['unknowns']):,} | {case.ranks} | {phase} | {seconds(series[case], phase)} | "
-                       f"{float(row['work_max']):.3g} | {imbalance(row, case.ranks):.2f} | {number(each['messages'])} | "
+                       f"{float(row['work_max']):.3g} | {imbalance(row, case.ranks):.2f} | {number(each['messages'])} | {number(each['multigrid'])} | "
                        f"{number(each['bytes'] / 1e3)} | {number(each['reductions'])} | {number(each['gathers'])} | {number(each['gathered'] / 1e3)} |")
 
 
@@ -104,7 +107,7 @@ def model_table(series, model):
     for phase in PHASES:
         for count in TERMS:
             unit = "a run" if count == "work" else "an iteration" if phase == "Sweeps" else "a mesh"
-            yield (f"| {phase} | {count} {unit} | {formula(model, phase, count)} | {100 * model.error[phase, count]:.0f} % | "
+            yield (f"| {phase} | {NAMES[count]} {unit} | {formula(model, phase, count)} | {100 * model.error[phase, count]:.0f} % | "
                    f"{100 * unseen(series, count, phase)[1]:.0f} % |")
 
 
@@ -175,15 +178,15 @@ def picture(kept, stem, latency, bandwidth):
     model = Model(series)
     figure, axes = plt.subplots(2, 2, figsize=(7.2, 5.6))
     line = [2**k for k in range(1, 14)]
+    size = max(case.size for case in series if case.series == "strong")
+    largest = [(case, rows) for case, rows in series.items() if case.series == "strong" and case.size == size]
+    n = int(largest[0][1][0]["unknowns"])
     for index, phase in enumerate(PHASES):
-        for axis, count, scale in (axes[0][0], "messages", 1), (axes[0][1], "work", 1):
-            chosen = [(case, rows) for case, rows in series.items() if case.series == "strong"]
-            size = max(case.size for case, _ in chosen)
-            of_size = [(case.ranks, float(row_of(rows, phase)[f"{count}_max"]) / scale) for case, rows in chosen if case.size == size]
-            n = next(int(rows[0]["unknowns"]) for case, rows in chosen if case.size == size)
-            x, y = zip(*[(x, y) for x, y in of_size if y > 0])
+        for axis, counts in (axes[0][0], MESSAGES), (axes[0][1], ("work",)):
+            had = [(case.ranks, sum(float(row_of(rows, phase)[f"{count}_max"]) for count in counts)) for case, rows in largest]
+            x, y = zip(*[(x, y) for x, y in had if y > 0])
             axis.plot(x, y, ls="", color=f"C{index}", label=phase)
-            axis.plot(line, [model.count(phase, count, model.state(p, n)) / scale for p in line], marker="", color=f"C{index}")
+            axis.plot(line, [sum(model.count(phase, count, model.state(p, n)) for count in counts) for p in line], marker="", color=f"C{index}")
     axes[0][0].set(title=f"messages of the rank with most, {n:,} unknowns")
     axes[0][1].set(title="its work, seconds")
     for n in SIZES:
@@ -198,5 +201,7 @@ def picture(kept, stem, latency, bandwidth):
     axes[1][1].legend(fontsize="xx-small")
     for axis in axes.flat:
         axis.set(xscale="log", yscale="log", xlabel="ranks")
+    low, high = axes[1][1].get_ylim()
+    axes[1][1].set_ylim(low, high * (high / low) ** 0.6)  # room for the legend
     legend_above(figure, [axes[0][0]], len(PHASES))
     save(figure, stem, colors=64)

@@ -29,8 +29,8 @@ OPTIONS = "-estimator_type zz -adaptor_max_level 28 -adaptor_max_unknowns 100000
 OPTIONS += " ".join(f"-{body}_ksp_type cg -{body}_pc_type hypre -{body}_ksp_rtol 1e-11" for body in ("lower", "upper"))
 CONSTANT = 1.4  # -scene_tol of a mesh, times the root of its unknowns
 TIMES = {"Set-up": "setup", "Sweeps": "solve", "Estimate": "estimate", "Adapt": "adapt", "Output": "output"}  # of a phase in the record
-SUMS = "messages bytes reductions reduced gathers gathered steps work".split()
-MOST = "messages bytes reduced gathered steps work".split()  # of which the largest of all ranks is kept, too
+SUMS = "messages bytes multigrid others reductions reduced gathers gathered steps work".split()
+MOST = "messages bytes multigrid others gathered steps work".split()  # of which the largest of all ranks is kept, too
 Case = collections.namedtuple("Case", "series size ranks mode")
 RUN = "cores oversubscribed verdict unknowns contact cycles sweeps its mesh force pressure energy estimate imbalance memory_MB".split()
 COLUMNS = [*Case._fields, *RUN, "phase", "seconds", "seconds_min", "seconds_max", *SUMS, *(f"{name}_max" for name in MOST)]
@@ -76,6 +76,7 @@ def counts(path):
     found = {}
     for row in read(path):
         one = found.setdefault(row["phase"], collections.Counter())
+        row["others"] = float(row["messages"]) - float(row["multigrid"])
         for name in SUMS:
             one[name] += float(row[name])
             one[f"{name}_max"] = max(one[f"{name}_max"], float(row[name]))
@@ -84,11 +85,12 @@ def counts(path):
 
 class Runs:
     def __init__(self, args):
-        self.args, self.place, self.counter = args, where(), ""
+        self.args, self.place, self.counter, self.session = args, where(), "", ""  # session: where MPI keeps what it needs, on each machine
         self.cores = len(os.sched_getaffinity(0))
 
     def build(self, folder):
-        self.counter = os.path.join(folder, "libcount.so")
+        """Where every machine of a cluster finds it"""
+        self.counter = os.path.join(os.path.abspath(folder), "libcount.so")
         command = [os.environ.get("MPICC", "mpicc"), *"-std=gnu99 -O2 -fPIC -shared".split(), os.path.join(HERE, "count.c"), "-o", self.counter]
         made = subprocess.run([*command, "-ldl"], capture_output=True, text=True)
         if made.returncode:
@@ -100,7 +102,7 @@ class Runs:
         command = shlex.split(self.args.launcher.format(ranks=case.ranks)) + list(before)
         command += [os.path.abspath(self.args.abut), "-options_file", SCENE, *scene(case, self.args.each).split(), "-record", path]
         command += ["-output", os.path.join(folder, "fields.xdmf")]
-        done = subprocess.run(command, capture_output=True, text=True, env={**MPI, **os.environ, "TMPDIR": folder})
+        done = subprocess.run(command, capture_output=True, text=True, env={**MPI, **os.environ, "TMPDIR": self.session})
         if os.path.exists(path):
             return record(path)
         said = [line for line in (done.stderr + done.stdout).splitlines() if line.strip()]
@@ -110,7 +112,7 @@ class Runs:
         """One of each phase; of a run that failed one that says why"""
         over = case.ranks > self.cores
         start = dict(case._asdict(), cores=self.cores, oversubscribed="yes" if over else "no", **self.place)
-        with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
+        with tempfile.TemporaryDirectory(dir=os.path.abspath(self.args.out), ignore_cleanup_errors=True) as folder:
             path = os.path.join(folder, "counts")
             r = self.once(case, folder, "env", f"LD_PRELOAD={self.counter}", f"ABUT_COUNTS={path}")
             start["verdict"] = r["verdict"]
@@ -179,7 +181,7 @@ def main():
     kept = Kept(path, COLUMNS, case_of)
     if not args.tables:
         runs = Runs(args)
-        with tempfile.TemporaryDirectory() as folder:
+        with tempfile.TemporaryDirectory(dir=args.out) as folder, tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as runs.session:
             runs.build(folder)
             kept.all(1, runs.rows, cases(args), named)
     from pages import picture, tables
