@@ -6,10 +6,10 @@ from same import farthest_key
 
 EXAMPLES = os.path.join(ROOT, "examples")
 ACTIVE = "-snes_type ddactive -snes_rtol 1e-12"
-def split(scene, *options, ranks, way="-scene_split", **keys):
+def split(scene, *options, ranks, way=("-scene_split",), **keys):
     """The record, and of every event its calls and messages in all phases"""
     with tempfile.TemporaryDirectory() as folder:
-        record = run(scene, *options, way, f"-log_view :{folder}/log", ranks=ranks, **keys)
+        record = run(scene, *options, *way, f"-log_view :{folder}/log", ranks=ranks, **keys)
         calls, messages = collections.Counter(), collections.Counter()
         with open(f"{folder}/log") as log:
             for name, count, sent in re.findall(r"^(\w+) +(\d+) [\d.]+ \S+ +\S+ +\S+ +\S+ +(\S+)", log.read(), re.M):
@@ -48,7 +48,7 @@ def test_a_body_on_one_rank_sends_nothing_to_solve_it():
     coarse = "-upper_mesh_cells 16,4 -adaptor_threshold 9"
     _, calls, messages = split(LAYERS, words, coarse, ranks=2)
     assert messages["KSPSolve"] == 0 and messages["MatMult"] == 0 and calls["MatMult"] > 50, (calls, messages)
-    assert split(LAYERS, words, coarse, ranks=2, way="")[2]["MatMult"] > 50
+    assert split(LAYERS, words, coarse, ranks=2, way=())[2]["MatMult"] > 50
 
 
 def test_a_solver_that_fails_on_some_ranks_is_known_to_all():
