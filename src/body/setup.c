@@ -37,6 +37,9 @@ static PetscErrorCode AbutBodyDiscretize_Private(AbutBody body, PetscBool *anew)
   PetscCall(AbutBodyConditionsSetUp_Private(body));
   PetscCall(AbutBodyLoadsSetUp_Private(body));
   PetscCall(AbutBodyModesCreate_Private(body));
+  /* ghost values are got by a scatter that all ranks set up at its first use: that must not come when bodies work side by side */
+  PetscCall(VecGhostUpdateBegin(body->u, INSERT_VALUES, SCATTER_FORWARD));
+  PetscCall(VecGhostUpdateEnd(body->u, INSERT_VALUES, SCATTER_FORWARD));
   PetscCall(AbutGetProcessorTime(&done));
   body->setupcpu = done - begun;
   PetscFunctionReturn(PETSC_SUCCESS);
