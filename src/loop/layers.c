@@ -147,24 +147,40 @@ static PetscReal AbutLayerBend_Private(PetscReal k, PetscReal xi, PetscReal h)
   return k / xi * 2. * PetscSqr(PetscCoshReal(s)) / (PetscSinhReal(2. * s) - 2. * s);
 }
 
-/* S += W_a diag(w) W_b' in the block of their pairs, for the first modes of both sides */
-static PetscErrorCode AbutLayerAdd_Private(AbutContactModel model, const AbutModes *a, const AbutModes *b, const PetscReal w[])
+/* The ranks share the columns of S: those of one of them */
+static void AbutLayerColumns_Private(const AbutContactModel model, PetscMPIInt rank, PetscMPIInt size, PetscInt *from, PetscInt *to)
+{
+  *from = (PetscInt)((PetscInt64)model->n * rank / size);
+  *to   = (PetscInt)((PetscInt64)model->n * (rank + 1) / size);
+}
+
+/* S += W_a diag(w) W_b' in the block of their pairs and the columns of this rank, for the first modes of both sides */
+static PetscErrorCode AbutLayerAdd_Private(AbutInterface f, AbutContactModel model, const AbutModes *a, const AbutModes *b,
+                                           const PetscReal w[])
 {
   const PetscInt modes = PetscMin(a->n, b->n);
-  PetscBLASInt   na, nb, nk, ld;
+  PetscInt       from, to;
+  PetscMPIInt    rank, size;
+  PetscBLASInt   na, nb, nk, ld, ldb;
   PetscReal      one = 1., *scaled;
 
   PetscFunctionBegin;
-  if (!modes || !a->rows || !b->rows) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCallMPI(MPI_Comm_rank(PetscObjectComm((PetscObject)f), &rank));
+  PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)f), &size));
+  AbutLayerColumns_Private(model, rank, size, &from, &to);
+  from = PetscMax(from, b->first);
+  to   = PetscMin(to, b->first + b->rows);
+  if (!modes || !a->rows || from >= to) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(a->rows * modes, &scaled));
   for (PetscInt k = 0; k < modes; ++k)
     for (PetscInt i = 0; i < a->rows; ++i) scaled[k * a->rows + i] = a->W[k * a->rows + i] * w[k];
   PetscCall(PetscBLASIntCast(a->rows, &na));
-  PetscCall(PetscBLASIntCast(b->rows, &nb));
+  PetscCall(PetscBLASIntCast(to - from, &nb));
+  PetscCall(PetscBLASIntCast(b->rows, &ldb));
   PetscCall(PetscBLASIntCast(modes, &nk));
   PetscCall(PetscBLASIntCast(model->n, &ld));
-  PetscCallBLAS("BLASgemm",
-                BLASgemm_("N", "T", &na, &nb, &nk, &one, scaled, &na, b->W, &nb, &one, model->S + b->first * model->n + a->first, &ld));
+  PetscCallBLAS("BLASgemm", BLASgemm_("N", "T", &na, &nb, &nk, &one, scaled, &na, b->W + from - b->first, &ldb, &one,
+                                      model->S + from * model->n + a->first, &ld));
   PetscCall(PetscFree(scaled));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -199,7 +215,7 @@ static PetscErrorCode AbutLayerSides_Private(AbutInterface f, AbutContactModel m
     if (condition == ABUT_DISPLACEMENT) w[k] = AbutLayerSqueeze_Private(compliance, xi, height);
     else w[k] = 0.5 * (othersides[r % 2] == far ? squeeze - bend : squeeze + bend);
   }
-  PetscCall(AbutLayerAdd_Private(model, &m[t], &m[r], w));
+  PetscCall(AbutLayerAdd_Private(f, model, &m[t], &m[r], w));
   PetscCall(PetscFree(w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -235,12 +251,38 @@ static PetscErrorCode AbutLayerShear_Private(AbutInterface f, AbutContactModel m
     else w[k] = compliance / xi / PetscTanhReal(2. * xi * height);
   }
   m.first += m.rows;
-  PetscCall(AbutLayerAdd_Private(model, &m, &m, w));
+  PetscCall(AbutLayerAdd_Private(f, model, &m, &m, w));
   PetscCall(PetscFree(w));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Fills S with the layers' compliance; some n^3 operations */
+/* All columns of S to all ranks */
+static PetscErrorCode AbutLayersGather_Private(AbutInterface f, AbutContactModel model)
+{
+  MPI_Comm     comm = PetscObjectComm((PetscObject)f);
+  PetscMPIInt  size, *counts, *first;
+  MPI_Datatype column;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  if (size == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc2(size, &counts, size, &first));
+  for (PetscMPIInt r = 0; r < size; ++r) {
+    PetscInt from, to;
+
+    AbutLayerColumns_Private(model, r, size, &from, &to);
+    first[r]  = (PetscMPIInt)from;
+    counts[r] = (PetscMPIInt)(to - from);
+  }
+  PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)model->n, MPIU_REAL, &column));
+  PetscCallMPI(MPI_Type_commit(&column));
+  PetscCallMPI(MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, model->S, counts, first, column, comm));
+  PetscCallMPI(MPI_Type_free(&column));
+  PetscCall(PetscFree2(counts, first));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Fills S, zero before, with the layers' compliance; some n^3 operations, which the ranks share */
 PetscErrorCode AbutInterfaceLayers_Private(AbutInterface f, AbutContactModel model)
 {
   AbutModes *m;
@@ -255,6 +297,7 @@ PetscErrorCode AbutInterfaceLayers_Private(AbutInterface f, AbutContactModel mod
   for (PetscInt t = 0; t < 2 * f->npairs; ++t)
     if (f->bodyof[t] >= 0 && model->first[t / 2 + 1] - model->first[t / 2] > model->normals[t / 2])
       PetscCall(AbutLayerShear_Private(f, model, t, &m[t]));
+  PetscCall(AbutLayersGather_Private(f, model));
   for (PetscInt t = 0; t < 2 * f->npairs; ++t) PetscCall(AbutModesDestroy_Private(&m[t]));
   PetscCall(PetscFree(m));
   PetscFunctionReturn(PETSC_SUCCESS);
