@@ -85,7 +85,7 @@ PetscErrorCode FembemDenseFactor(MPI_Comm comm, PetscInt n, PetscReal A[], Petsc
 
     if (rank == owner) PetscCall(FactorPanel(n - k, columns, panel, lda, &info));
     if (size == 1) break;
-    PetscCallMPI(MPI_Bcast(&info, 1, MPI_INT, owner, comm));
+    PetscCallMPI(MPI_Bcast(&info, sizeof(info), MPI_BYTE, owner, comm));
     PetscCall(SharePanel(comm, owner, n - k, columns, panel, lda, buffer));
     for (PetscInt j = k + width; j < n; j += width) {
       const PetscBLASInt rows = n - j, more = PetscMin(width, n - j);

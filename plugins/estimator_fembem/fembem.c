@@ -79,6 +79,11 @@ static PetscErrorCode AbutEstimatorEstimate_Fembem(AbutEstimator est, AbutBody b
                         "%" PetscInt_FMT " unknowns, %" PetscInt_FMT " iterations, %" PetscInt_FMT
                         " pairs evaluated and %zu numbers held on this rank\n",
                         cost.unknowns, cost.iterations, cost.pairs, cost.numbers));
+    if (cost.failed)
+      PetscCall(PetscPrintf(comm,
+                            "warning: estimator_fembem_solve: %" PetscInt_FMT " iterations have not solved for %" PetscInt_FMT
+                            " boundary unknowns; the estimate takes those of the finite elements, as with none\n",
+                            cost.iterations, cost.unknowns));
     FembemTakeOffRigidMotion(&boundary); /* where no displacement is given, the solution has any */
   }
   PetscCall(AbutEstimatorSetUnknowns(est, cost.unknowns));

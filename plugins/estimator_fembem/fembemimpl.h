@@ -51,9 +51,10 @@ typedef struct {
   PetscReal tolerance; /* relative, above: of the residual, and of what distant elements do to each other */
 } FembemSolver;
 typedef struct {
-  PetscInt unknowns, iterations; /* no iterations: dense */
-  PetscInt pairs;                /* of elements, evaluated on this rank */
-  size_t   numbers;              /* held on this rank for the system */
+  PetscInt  unknowns, iterations; /* no iterations: dense */
+  PetscInt  pairs;                /* of elements, evaluated on this rank */
+  size_t    numbers;              /* held on this rank for the system */
+  PetscBool failed;               /* the iterations did not converge: the boundary is as it was */
 } FembemCost;
 PETSC_INTERN PetscErrorCode FembemSolveGalerkin(FembemBoundary *, FembemSolver, FembemCost *);
 

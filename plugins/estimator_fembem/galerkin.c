@@ -101,6 +101,10 @@ PetscErrorCode FembemSolveGalerkin(FembemBoundary *b, FembemSolver solver, Fembe
     cost->numbers = (size_t)s.nt * (s.nt + s.nu) + (size_t)s.nu * s.nu;
   }
   cost->pairs += s.pairs;
+  if (cost->failed) {
+    PetscCall(FembemSystemDestroy(&s));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   for (PetscInt k = 0; k < s.rows * b->n; ++k)
     if (s.tindex[k] >= 0) s.t[k] = s.f[s.tindex[k]];
   for (PetscInt k = 0; k < 2 * b->nnodes; ++k)

@@ -102,6 +102,7 @@ static PetscErrorCode AbutBodySetNearNullSpace_Private(AbutBody body, const Pets
   Vec          mode[3];
 
   PetscFunctionBegin;
+  if (!body->here) PetscFunctionReturn(PETSC_SUCCESS); /* vectors of no length cannot have length 1 */
   for (PetscInt k = 0; k < 3; ++k) {
     PetscCall(AbutBodyCreateGroupVec_Private(body, &mode[k]));
     PetscCall(AbutBodySetMotion_Private(body, k, center, mode[k]));
@@ -134,17 +135,18 @@ PetscErrorCode AbutBodyModesCreate_Private(AbutBody body)
 /* They as the null space of the matrices of the group, which outlive every other look at them */
 static PetscErrorCode AbutBodyCreateNullSpace_Private(AbutBody body, MatNullSpace *space)
 {
-  Vec mode[ABUT_MAX_MODES], group;
+  const PetscInt n = body->here ? body->nmodes : 0;
+  Vec            mode[ABUT_MAX_MODES], group;
 
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < body->nmodes; ++k) {
+  for (PetscInt k = 0; k < n; ++k) {
     PetscCall(AbutBodyGetGroupVec_Private(body, body->mode[k], &group));
     PetscCall(VecDuplicate(group, &mode[k]));
     PetscCall(VecCopy(group, mode[k]));
     PetscCall(AbutBodyRestoreGroupVec_Private(body, body->mode[k], &group));
   }
-  PetscCall(MatNullSpaceCreate(body->group, PETSC_FALSE, body->nmodes, mode, space));
-  for (PetscInt k = 0; k < body->nmodes; ++k) PetscCall(VecDestroy(&mode[k]));
+  PetscCall(MatNullSpaceCreate(body->group, PETSC_FALSE, n, mode, space));
+  for (PetscInt k = 0; k < n; ++k) PetscCall(VecDestroy(&mode[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -103,6 +103,7 @@ static PetscErrorCode AbutSceneArchive_Private(AbutScene scene, AbutArchive ar)
   for (PetscInt b = 0; b < scene->nbodies; ++b) PetscCall(AbutBodyArchive(scene->body[b], ar));
   PetscCall(AbutSceneArchiveEdges_Private(scene, ar));
   PetscCall(AbutInterfaceArchive(scene->iface, ar));
+  if (ar == scene->restart) PetscCall(AbutSceneSplit_Private(scene, PETSC_FALSE)); /* before anything is made on these meshes */
   if (stays) {
     PetscCall(AbutInterfaceSetUp(scene->iface));
     if (!scene->x) { /* it is being read */

@@ -276,8 +276,8 @@ static PetscErrorCode AbutSceneCheckContactKeys_Private(AbutScene scene)
 .  -scene_cold              - with an adaptor: every mesh begins without the traces and forces of the last one
 .  -scene_eps_u <0.0015>   - with it: the relative change of the traces at which the run ends
 .  -scene_load_steps <f1,f2,...> - factors of all that is prescribed, one load step for each, see `AbutSceneSolve()`
-.  -scene_split            - every body on ranks of its own, as many as it has unknowns, or every rank with bodies of its own, and not every
-                              body on all ranks; does nothing on one
+.  -scene_split            - every body on ranks of its own, in proportion to its unknowns, or every rank with bodies of its own, and not
+                              every body on all ranks; does nothing on one
 .  -scene_tol T            - relative error in the energy norm to be reached: chooses theta, tolerances and refinement, see below
 .  -adaptor_type, -estimator_type, -snes_* - what adapts, estimates, iterates; see `AbutAdaptorCreate()`, `AbutEstimatorCreate()`,
                                              `SNESDDNEUMANN`

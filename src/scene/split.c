@@ -111,7 +111,9 @@ PetscErrorCode AbutSceneSplit_Private(AbutScene scene, PetscBool first)
   }
   if (first || AbutSplitBusiest_Private(scene->nbodies, unknowns, size, load, now) >
                  ABUT_UNEVEN * AbutSplitBusiest_Private(scene->nbodies, unknowns, size, load, wanted))
-    for (PetscInt b = 0; b < scene->nbodies; ++b) PetscCall(AbutBodySetRanks(scene->body[b], wanted[b].first, wanted[b].n));
+    for (PetscInt b = 0; b < scene->nbodies; ++b)
+      if (wanted[b].first != now[b].first || wanted[b].n != now[b].n)
+        PetscCall(AbutBodySetRanks(scene->body[b], wanted[b].first, wanted[b].n));
   PetscCall(PetscFree(load));
   PetscCall(PetscLogEventEnd(event, scene, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -277,6 +277,17 @@ static PetscBool AbutOptionsIsLate_Private(const char name[])
   return PETSC_FALSE;
 }
 
+/* Has no rank read this key of the first rank? A rank without a body does not read what its factor does. */
+static PetscErrorCode AbutOptionsIsLeft_Private(MPI_Comm comm, PetscInt n, char *const names[], char name[ABUT_LIST], PetscBool *left)
+{
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Bcast(name, ABUT_LIST, MPI_CHAR, 0, comm));
+  *left = PETSC_FALSE;
+  for (PetscInt k = 0; k < n && !*left; ++k) PetscCall(PetscStrcmp(names[k], name, left));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, left, 1, MPIU_BOOL, MPI_LAND, comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@C
    AbutOptionsCheckAllRead - Ends the run if some option was read by nobody: a misspelt key would answer another question
 
@@ -292,17 +303,22 @@ static PetscBool AbutOptionsIsLate_Private(const char name[])
 @*/
 PetscErrorCode AbutOptionsCheckAllRead(MPI_Comm comm, PetscBool final)
 {
-  PetscInt n, nbad = 0;
-  char   **names, **values, list[ABUT_LIST] = "";
+  PetscInt n, first, nbad                   = 0;
+  char   **names, **values, list[ABUT_LIST] = "", name[ABUT_LIST];
 
   PetscFunctionBegin;
   PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
-  for (PetscInt i = 0; i < n; ++i) {
-    const PetscBool late = AbutOptionsIsLate_Private(names[i]);
+  first = n;
+  PetscCallMPI(MPI_Bcast(&first, 1, MPIU_INT, 0, comm));
+  for (PetscInt i = 0; i < first; ++i) {
+    PetscBool late, left;
 
-    if (late && (!final || !strncmp(names[i], "objects_dump", 12) || !strncmp(names[i], "malloc", 6) || !strncmp(names[i], "options_", 8)))
-      continue;
-    PetscCall(AbutListAddItem_Private(list, sizeof(list), names[i]));
+    PetscCall(PetscStrncpy(name, i < n ? names[i] : "", sizeof(name)));
+    PetscCall(AbutOptionsIsLeft_Private(comm, n, names, name, &left));
+    late = AbutOptionsIsLate_Private(name);
+    if (!left) continue;
+    if (late && (!final || !strncmp(name, "objects_dump", 12) || !strncmp(name, "malloc", 6) || !strncmp(name, "options_", 8))) continue;
+    PetscCall(AbutListAddItem_Private(list, sizeof(list), name));
     ++nbad;
   }
   PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));

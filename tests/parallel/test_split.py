@@ -61,3 +61,14 @@ def test_a_solver_that_fails_on_some_ranks_is_known_to_all():
             words += f" -{name}_mesh_box 0,0,4,1 -{name}_mesh_cells 8,2 -{name}_material_young 2e5 -{name}_material_poisson 0.3"
             words += f" -{name}_bc_left_u1 0 -{name}_bc_bottom_u2 0 -{name}_bc_top_u2 -1e-3"
         assert split(None, words, ranks=ranks, expect=2)[0]["verdict"] == "linear_solver"
+
+
+def test_a_run_goes_on_from_a_checkpoint_after_bodies_have_moved():
+    """One sweep a cycle: the last checkpoint has the trace of meshes that stand still, and bodies on other ranks than first meshes get"""
+    words = "-scene_interleave -scene_eps_u 1e-4 -adaptor_threshold 0.1 -adaptor_max_level 4 -mid_pair_pressure_side second -upper_mesh_cells 16,4"
+    with tempfile.TemporaryDirectory() as folder:
+        whole = split(LAYERS, words, f"-checkpoint {folder}/checkpoint -checkpoint_every 30", ranks=8, expect=None)[0]
+        again = split(LAYERS, words, f"-restart {folder}/checkpoint", ranks=8, expect=None)[0]
+    assert (whole["body.lower.ranks"], whole["cycles"] > 30, whole["verdict"]) == (again["body.lower.ranks"], True, again["verdict"])
+    assert whole["body.lower.ranks"] > 2, whole
+    case("H23", "restart of bodies on ranks of their own, after they moved, off the run without", farthest_key(whole, again)[0], 1e-9)

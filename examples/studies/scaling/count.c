@@ -280,6 +280,29 @@ WRAP(Scatterv,
      (const void *x, const int n[], const int from[], MPI_Datatype type, void *y, int m, MPI_Datatype kind, int root, MPI_Comm comm),
      (x, n, from, type, y, m, kind, root, comm), Collective(GATHERS, Size(m, kind), comm), )
 
+/* Those that do not block, by which PETSc sends vectors to all ranks */
+#define IGATHER(name) \
+  WRAP(name, (const void *x, int n, MPI_Datatype type, void *y, int m, MPI_Datatype kind, MPI_Comm comm, MPI_Request *r), \
+       (x, n, type, y, m, kind, comm, r), Collective(GATHERS, Size(m, kind) * Ranks(comm), comm), )
+IGATHER(Iallgather)
+IGATHER(Ialltoall)
+WRAP(Iallgatherv,
+     (const void *x, int n, MPI_Datatype type, void *y, const int m[], const int at[], MPI_Datatype kind, MPI_Comm comm, MPI_Request *r),
+     (x, n, type, y, m, at, kind, comm, r), Collective(GATHERS, Size(All(m, comm), kind), comm), )
+WRAP(Ialltoallv,
+     (const void *x, const int n[], const int from[], MPI_Datatype type, void *y, const int m[], const int at[], MPI_Datatype kind,
+      MPI_Comm comm, MPI_Request *r),
+     (x, n, from, type, y, m, at, kind, comm, r), Collective(GATHERS, Size(All(m, comm), kind), comm), )
+WRAP(Ibcast, (void *x, int n, MPI_Datatype type, int root, MPI_Comm comm, MPI_Request *r), (x, n, type, root, comm, r), REDUCE, )
+WRAP(Igatherv,
+     (const void *x, int n, MPI_Datatype type, void *y, const int m[], const int at[], MPI_Datatype kind, int root, MPI_Comm comm,
+      MPI_Request *r),
+     (x, n, type, y, m, at, kind, root, comm, r), Collective(GATHERS, Other(root, comm) ? 0 : Size(All(m, comm), kind), comm), )
+WRAP(Iscatterv,
+     (const void *x, const int n[], const int from[], MPI_Datatype type, void *y, int m, MPI_Datatype kind, int root, MPI_Comm comm,
+      MPI_Request *r),
+     (x, n, from, type, y, m, kind, root, comm, r), Collective(GATHERS, Size(m, kind), comm), )
+
 /* --- the file --------------------------------------------------------------------------------------------------------------- */
 static void Write(const double all[], int size)
 {

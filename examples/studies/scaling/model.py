@@ -17,6 +17,7 @@ State = collections.namedtuple("State", "p n m")  # ranks, unknowns of all bodie
 Term = collections.namedtuple("Term", "cause value")
 CAUSES = {  # of seconds, as the page names them
     "share": "cells of its own",
+    "columns": "columns of the contact model",
     "replicated": "contact model on every rank",
     "boundary": "traces and boundaries on every rank",
     "fixed": "work whatever the size",
@@ -48,17 +49,19 @@ TERMS = {
         "log p": lambda s: log2(s.p),
     },
     "steps": {"log p": lambda s: log2(s.p), "log p log n": lambda s: log2(s.p) * log2(s.n)},
-    "gathered": {"1": lambda s: 1.0 * (s.p > 1), "p": lambda s: s.p * (s.p > 1.0), "m": lambda s: s.m * (s.p > 1.0)},
+    "gathered": {"1": lambda s: 1.0 * (s.p > 1), "p": lambda s: s.p * (s.p > 1.0), "m": lambda s: s.m * (s.p > 1.0), "m^2": lambda s: s.m**2 * (s.p > 1.0)},
     "work": {
         "n/p": lambda s: s.n / s.p,
         "1": lambda s: 1.0,
         "m": lambda s: float(s.m),
         "m^2": lambda s: float(s.m) ** 2,
         "m^3": lambda s: float(s.m) ** 3,
+        "m^3/p": lambda s: float(s.m) ** 3 / s.p,
     },  # none that grows with p: more ranks than cores share caches, which looks like that
 }
 MESSAGES = ("multigrid", "others")
-CAUSE = {"n/p": "share", "1": "fixed", "m": "boundary", "m^2": "replicated", "m^3": "replicated"}  # of work
+CAUSE = {"n/p": "share", "1": "fixed", "m": "boundary", "m^2": "replicated", "m^3": "replicated", "m^3/p": "columns"}  # of work
+DIVIDED = ("share", "columns")  # causes of seconds that more ranks make less
 GROWTH = {"1": lambda s: 1.0, "log n": lambda s: log2(s.n), "log p": lambda s: log2(s.p)}  # of iterations and meshes
 
 
@@ -69,6 +72,7 @@ def fit(terms, states, values):
     if not used.any():
         return {}, 0.0
     columns = {name: np.array([term(s) for s in states]) for name, term in terms.items()}
+    terms = [name for name in terms if columns[name][used].any()]
     for size in range(1, len(terms) + 1):
         for names in itertools.combinations(terms, size):
             a = np.stack([columns[name][used] / values[used] for name in names], 1)
@@ -136,5 +140,5 @@ class Model:
             state = self.state(2**k, unknowns)
             if self.efficiency(state, latency, bandwidth, without) < 0.5:
                 own = self.seconds(state, latency, bandwidth)
-                return state.p, max((key for key in own if key[1] not in ("share", *without)), key=lambda key: own[key])
+                return state.p, max((key for key in own if key[1] not in (*DIVIDED, *without)), key=lambda key: own[key])
         return math.inf, None

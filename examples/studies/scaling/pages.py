@@ -4,7 +4,7 @@ import os, sys
 HERE = os.path.dirname(os.path.abspath(__file__))
 STUDIES = os.path.dirname(HERE)
 sys.path[:0] = [HERE, os.path.dirname(STUDIES), STUDIES]
-from model import CAUSES, MESSAGES, PHASES, TERMS, Model  # noqa: E402
+from model import DIVIDED, CAUSES, MESSAGES, PHASES, TERMS, Model  # noqa: E402
 from picture import legend_above, plt, save  # noqa: E402
 
 RANKS = (100, 1000, 10000)
@@ -122,7 +122,7 @@ def prediction_table(model, latency, bandwidth):
         for p in RANKS:
             state = model.state(p, n)
             found = model.seconds(state, latency, bandwidth)
-            key = max((key for key in found if key[1] != "share"), key=lambda key: found[key])
+            key = max((key for key in found if key[1] not in DIVIDED), key=lambda key: found[key])
             yield (f"| {n:.0e} | {p:,} | {number(sum(found.values()))} | {model.efficiency(state, latency, bandwidth):.2g} | {cause(key)} | "
                    f"{100 * found[key] / sum(found.values()):.0f} % |")
 
