@@ -135,7 +135,8 @@ START_TEST(an_unknown_name_is_answered_with_the_names_there_are)
   AbutEstimator  est;
   PetscErrorCode code;
   const char    *start = "estimator_type: no estimator named \"zzz\"; there are: ";
-  const char    *end   = " (a plugin from elsewhere is loaded with -plugin path/to/libestimator_NAME.so)";
+  const char    *hint  = " (a plugin from elsewhere is loaded with -plugin path/to/libestimator_NAME.so; there is no ";
+  const char    *end   = "libestimator_zzz.so)";
 
   CkOk(AbutEstimatorCreate(PETSC_COMM_WORLD, &est));
   CkCatch(code = AbutEstimatorSetType(est, "zzz"));
@@ -143,6 +144,7 @@ START_TEST(an_unknown_name_is_answered_with_the_names_there_are)
   ck_assert_msg(!strncmp(ck_line, start, strlen(start)), "%s", ck_line);
   ck_assert_msg(strlen(ck_line) > strlen(end) && !strcmp(ck_line + strlen(ck_line) - strlen(end), end), "%s", ck_line);
   ck_assert_msg(strstr(ck_line, "fake, fake2"), "%s", ck_line);
+  ck_assert_msg(strstr(ck_line, hint), "%s", ck_line);
   ck_assert_msg(!strchr(ck_line, '\n'), "%s", ck_line);
   CkOk(AbutEstimatorDestroy(&est));
 }
