@@ -6,7 +6,7 @@
 Two layers of about a million unknowns each, uniform meshes, penalty contact, once solved. A turn is a run on one rank and one on two; what
 counts is the ratio of each turn, and of these the median: a machine that is busy for a while disturbs both runs of a turn. Prints for
 the whole run and each part of it the medians of the seconds, and median, least and largest ratio. All runs of one launch have to agree on
-force and pressure to nine digits. For the estimator: --options "-estimator_type fembem".
+force and pressure to eight digits. For the estimator: --options "-estimator_type fembem".
 """
 import argparse, os, shlex, statistics, subprocess, sys, tempfile
 
@@ -46,7 +46,7 @@ def main():
             order = (1, 2) if turn % 2 else (2, 1)
             runs = {ranks: once(args, ranks, folder) for ranks in order}
         for key in "pair.mid.force", "pair.mid.pressure_max":
-            assert abs(runs[1][key] / runs[2][key] - 1) < 1e-9, (key, runs)
+            assert abs(runs[1][key] / runs[2][key] - 1) < 1e-8, (key, runs)
         turns.append(runs)
         print(f"turn {turn + 1}: {runs[1]['time.total']:.1f} s on one rank, {runs[2]['time.total']:.1f} s on two, ratio {runs[2]['time.total'] / runs[1]['time.total']:.3f}", flush=True)
     print(f"\n{int(turns[0][1]['unknowns'])} unknowns, {int(turns[0][1]['sweeps'])} sweeps, {args.turns} turns, {args.options}")
