@@ -167,7 +167,7 @@ def test_a_run_that_fails_stays_a_row():
 def test_one_rank_and_two_take_turns():
     """A table of times, of which nothing is asked but that it is there: two turns, small meshes, and with an estimator"""
     for options in "-scene_split", "-estimator_type fembem":
-        command = [sys.executable, os.path.join(STUDY, "two.py"), "--abut", PROGRAM, *"--turns 2 --cells 128,32 --options".split(), options]
+        command = [sys.executable, os.path.join(STUDY, "two.py"), "--abut", PROGRAM, *"--turns 2 --cells 128,32".split(), f"--options={options}"]
         done = subprocess.run(command, capture_output=True, text=True)
         assert done.returncode == 0, done.stdout + done.stderr
         assert done.stdout.count("turn ") == 2 and "part        one rank, s" in done.stdout and "\ntotal  " in done.stdout, done.stdout

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 """Two ranks against one on a machine with two free cores: wall times of runs that take turns.
 
-  two.py [--abut build/bin/abut] [--turns 9] [--cells 1408,352] [--options "-scene_split"] [--launcher "mpiexec -n {ranks}"]
+  two.py [--abut build/bin/abut] [--turns 9] [--cells 1408,352] [--options=-scene_split] [--launcher "mpiexec -n {ranks}"]
 
 Two layers of about a million unknowns each, uniform meshes, penalty contact, once solved. A turn is a run on one rank and one on two; what
 counts is the ratio of each turn, and of these the median: a machine that is busy for a while disturbs both runs of a turn. Prints for
 the whole run and each part of it the medians of the seconds, and median, least and largest ratio. All runs of one launch have to agree on
-force and pressure to eight digits. For the estimator: --options "-estimator_type fembem".
+force and pressure to eight digits. For the estimator: --options="-estimator_type fembem".
 """
 import argparse, os, shlex, statistics, subprocess, sys, tempfile
 
