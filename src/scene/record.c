@@ -49,15 +49,14 @@ static PetscErrorCode AbutSceneScales_Private(AbutBody body, PetscReal *force, P
 
 /* How evenly the ranks that have a body share it: the most cells of one over the mean. Assembly, stresses and estimators follow the cells;
    the rows of the matrix do too, but for the nodes on the cut, each of which has one owner. */
-static PetscErrorCode AbutSceneRecordRanks_Private(AbutScene scene, AbutMesh mesh, const char name[])
+static PetscErrorCode AbutSceneRecordRanks_Private(AbutScene scene, AbutMesh mesh, PetscInt cells, const char name[])
 {
   const AbutMeshTopology *t;
   PetscMPIInt             first, n;
-  PetscInt                cells, most;
+  PetscInt                most;
 
   PetscFunctionBegin;
   PetscCall(AbutMeshGetTopology(mesh, &t));
-  PetscCall(AbutMeshGetCellCount(mesh, &cells));
   PetscCall(AbutMeshGetRanks(mesh, &first, &n));
   PetscCallMPI(MPI_Allreduce(&t->ncells, &most, 1, MPIU_INT, MPI_MAX, PetscObjectComm((PetscObject)mesh)));
   if (scene->split) PetscCall(AbutSceneSetReal_Private(scene, "body", name, "ranks", n));
@@ -102,7 +101,7 @@ static PetscErrorCode AbutSceneRecordBodies_Private(AbutScene scene)
     PetscCall(AbutSceneSetReal_Private(scene, "body", name, "h_ratio", m.ratio));
     PetscCall(AbutSceneSetReal_Private(scene, "body", name, "lemma", m.lemma));
     if (uniform > 0.) PetscCall(AbutSceneSetReal_Private(scene, "body", name, "unknowns_uniform", uniform));
-    PetscCall(AbutSceneRecordRanks_Private(scene, mesh, name));
+    PetscCall(AbutSceneRecordRanks_Private(scene, mesh, cells, name));
     PetscCall(AbutBodyGetIntegration(scene->body[b], &integration, NULL));
     PetscCall(PetscSNPrintf(key, sizeof(key), "body.%s.integration", name));
     PetscCall(AbutRecorderSetString(rec, key, integration));
