@@ -24,11 +24,7 @@ static PetscErrorCode AbutBodyCreateSpringMat_Private(AbutBody body, const AbutM
     diagonal[own] = PetscMin(room, t->nowned);
     off[own]      = PetscMin(room, t->nglobal - t->nowned);
   }
-  PetscCall(MatCreate(body->group, &body->S));
-  PetscCall(MatSetSizes(body->S, 2 * t->nowned, 2 * t->nowned, PETSC_DETERMINE, PETSC_DETERMINE));
-  PetscCall(MatSetBlockSize(body->S, 2));
-  PetscCall(MatSetType(body->S, MATAIJ));
-  PetscCall(MatXAIJSetPreallocation(body->S, 2, diagonal, off, NULL, NULL));
+  PetscCall(AbutBodyCreateGroupMat_Private(body, diagonal, off, &body->S));
   PetscCall(PetscFree2(diagonal, off));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

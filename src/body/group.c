@@ -57,17 +57,18 @@ PetscErrorCode AbutBodySetRanks(AbutBody body, PetscMPIInt first, PetscMPIInt n)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A vector of the unknowns, zero, for matrices and solver */
-PetscErrorCode AbutBodyCreateGroupVec_Private(AbutBody body, Vec *v)
+/* A square matrix of the unknowns, [nowned] nodes in the rows of each of its nodes: owned by this rank, and not */
+PetscErrorCode AbutBodyCreateGroupMat_Private(AbutBody body, const PetscInt diagonal[], const PetscInt off[], Mat *M)
 {
   const AbutMeshTopology *t;
 
   PetscFunctionBegin;
   PetscCall(AbutMeshGetTopology(body->mesh, &t));
-  PetscCall(VecCreate(body->group, v));
-  PetscCall(VecSetSizes(*v, 2 * t->nowned, PETSC_DECIDE));
-  PetscCall(VecSetBlockSize(*v, 2));
-  PetscCall(VecSetType(*v, VECSTANDARD));
+  PetscCall(MatCreate(body->group, M));
+  PetscCall(MatSetSizes(*M, 2 * t->nowned, 2 * t->nowned, PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetBlockSize(*M, 2));
+  PetscCall(MatSetType(*M, MATAIJ));
+  PetscCall(MatXAIJSetPreallocation(*M, 2, diagonal, off, NULL, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -104,7 +104,7 @@ static PetscErrorCode AbutBodySetNearNullSpace_Private(AbutBody body, const Pets
   PetscFunctionBegin;
   if (!body->here) PetscFunctionReturn(PETSC_SUCCESS); /* vectors of no length cannot have length 1 */
   for (PetscInt k = 0; k < 3; ++k) {
-    PetscCall(AbutBodyCreateGroupVec_Private(body, &mode[k]));
+    PetscCall(AbutBodyCreateVecOn_Private(body, body->group, &mode[k]));
     PetscCall(AbutBodySetMotion_Private(body, k, center, mode[k]));
   }
   PetscCall(AbutOrthonormalize_Private(3, mode));

@@ -32,7 +32,7 @@ static PetscErrorCode AbutBodyDiscretize_Private(AbutBody body, PetscBool *anew)
   PetscCall(AbutBodyCreateVec(body, &body->load));
   PetscCall(VecDuplicate(body->load, &body->lift));
   PetscCall(VecDuplicate(body->load, &body->contact));
-  PetscCall(AbutBodyCreateGroupVec_Private(body, &body->rhs));
+  PetscCall(AbutBodyCreateVecOn_Private(body, body->group, &body->rhs));
   PetscCall(AbutBodyBoundarySetUp_Private(body));
   PetscCall(AbutBodyConditionsSetUp_Private(body));
   PetscCall(AbutBodyLoadsSetUp_Private(body));

@@ -134,11 +134,7 @@ static PetscErrorCode AbutBodyPreallocate_Private(AbutBody body, const AbutMeshT
   }
   PetscCall(VecRestoreArray(count, &a));
   PetscCall(VecDestroy(&count));
-  PetscCall(MatCreate(body->group, &body->A));
-  PetscCall(MatSetSizes(body->A, 2 * t->nowned, 2 * t->nowned, PETSC_DETERMINE, PETSC_DETERMINE));
-  PetscCall(MatSetBlockSize(body->A, 2));
-  PetscCall(MatSetType(body->A, MATAIJ));
-  PetscCall(MatXAIJSetPreallocation(body->A, 2, diagonal, off, NULL, NULL));
+  PetscCall(AbutBodyCreateGroupMat_Private(body, diagonal, off, &body->A));
   PetscCall(PetscFree2(diagonal, off));
   PetscCall(PetscFree(cells.start));
   PetscCall(PetscFree(cells.list));

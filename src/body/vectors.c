@@ -27,6 +27,20 @@ PetscErrorCode AbutBodyGetSize(AbutBody body, PetscInt *n)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The unknowns on all ranks of the body, or on its group */
+PetscErrorCode AbutBodyCreateVecOn_Private(AbutBody body, MPI_Comm comm, Vec *v)
+{
+  const AbutMeshTopology *t;
+
+  PetscFunctionBegin;
+  PetscCall(AbutMeshGetTopology(body->mesh, &t));
+  PetscCall(VecCreate(comm, v));
+  PetscCall(VecSetSizes(*v, 2 * t->nowned, PETSC_DETERMINE));
+  PetscCall(VecSetBlockSize(*v, 2));
+  PetscCall(VecSetType(*v, VECSTANDARD));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
    AbutBodyCreateVec - Creates a vector of the body's unknowns: nodal displacements or forces
 
@@ -44,14 +58,8 @@ PetscErrorCode AbutBodyGetSize(AbutBody body, PetscInt *n)
 @*/
 PetscErrorCode AbutBodyCreateVec(AbutBody body, Vec *v)
 {
-  const AbutMeshTopology *t;
-
   PetscFunctionBegin;
-  PetscCall(AbutMeshGetTopology(body->mesh, &t));
-  PetscCall(VecCreate(PetscObjectComm((PetscObject)body), v));
-  PetscCall(VecSetSizes(*v, 2 * t->nowned, 2 * t->nglobal));
-  PetscCall(VecSetBlockSize(*v, 2));
-  PetscCall(VecSetType(*v, VECSTANDARD));
+  PetscCall(AbutBodyCreateVecOn_Private(body, PetscObjectComm((PetscObject)body), v));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -141,7 +141,8 @@ PETSC_INTERN PetscErrorCode    AbutBodyUngatherBoundary_Private(AbutBody, const 
 PETSC_INTERN PetscErrorCode    AbutHooksDestroy_Private(AbutHook *);
 /* group.c */
 PETSC_INTERN PetscErrorCode AbutBodyLeaveGroup_Private(AbutBody);
-PETSC_INTERN PetscErrorCode AbutBodyCreateGroupVec_Private(AbutBody, Vec *);
+PETSC_INTERN PetscErrorCode AbutBodyCreateVecOn_Private(AbutBody, MPI_Comm, Vec *); /* vectors.c */
+PETSC_INTERN PetscErrorCode AbutBodyCreateGroupMat_Private(AbutBody, const PetscInt[], const PetscInt[], Mat *);
 PETSC_INTERN PetscErrorCode AbutBodyGetGroupVec_Private(AbutBody, Vec, Vec *);
 PETSC_INTERN PetscErrorCode AbutBodyRestoreGroupVec_Private(AbutBody, Vec, Vec *);
 PETSC_INTERN PetscErrorCode AbutBodyMult_Private(AbutBody, Mat, Vec, Vec);
