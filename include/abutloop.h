@@ -51,6 +51,8 @@ PETSC_EXTERN PetscErrorCode AbutInterfaceSetGamma(AbutInterface, PetscReal);
 PETSC_EXTERN PetscErrorCode AbutInterfaceGetGamma(AbutInterface, PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutInterfaceJudgeGamma(AbutInterface, char[], size_t);
 PETSC_EXTERN PetscErrorCode AbutInterfaceSetSpectrum(AbutInterface, PetscBool);
+PETSC_EXTERN PetscErrorCode AbutInterfaceSetGammaFromOptions(AbutInterface);
+PETSC_EXTERN PetscErrorCode AbutInterfaceSetShare(AbutInterface, PetscInt);
 PETSC_EXTERN PetscErrorCode AbutInterfaceGetSpectrum(AbutInterface, PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutInterfaceGetResidual(AbutInterface, PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode AbutInterfaceGetPressure(AbutInterface, PetscInt, const PetscReal *[]);

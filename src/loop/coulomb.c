@@ -36,23 +36,26 @@ static PetscInt AbutFrictionActive_Private(AbutContactModel model)
 static PetscErrorCode AbutFrictionSolveActive_Private(AbutContactModel model, PetscInt na)
 {
   const PetscInt *active = model->active, n = model->n, m = model->m;
+  PetscReal      *M;
   PetscBLASInt    bn, columns, info, *pivot;
 
   PetscFunctionBegin;
   if (!na) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!model->friction->M) PetscCall(PetscMalloc1(n * n, &model->friction->M));
+  M = model->friction->M;
   for (PetscInt j = 0; j < na; ++j) {
-    const PetscReal  share = AbutFrictionShare_Private(model, active[j]), *S = model->S + active[j] * n;
-    const PetscReal *T = share != 0. ? model->S + model->friction->tangent[active[j]] * n : NULL;
+    const PetscReal  share = AbutFrictionShare_Private(model, active[j]), *S = model->S->a + active[j] * n;
+    const PetscReal *T = share != 0. ? model->S->a + model->friction->tangent[active[j]] * n : NULL;
 
-    for (PetscInt i = 0; i < na; ++i) model->factor[j * na + i] = S[active[i]] + (T ? share * T[active[i]] : 0.);
-    model->factor[j * na + j] += model->soft[active[j]];
+    for (PetscInt i = 0; i < na; ++i) M[j * na + i] = S[active[i]] + (T ? share * T[active[i]] : 0.);
+    M[j * na + j] += model->soft[active[j]];
     for (PetscInt k = 0; k < m; ++k) model->X[k * na + j] = model->G[k * n + active[j]];
     model->X[m * na + j] = model->b[active[j]];
   }
   PetscCall(PetscBLASIntCast(na, &bn));
   PetscCall(PetscBLASIntCast(m + 1, &columns));
   PetscCall(PetscMalloc1(na, &pivot));
-  PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&bn, &columns, model->factor, &bn, pivot, model->X, &bn, &info));
+  PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&bn, &columns, M, &bn, pivot, model->X, &bn, &info));
   PetscCall(PetscFree(pivot));
   PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "The contact model with friction is singular: LAPACK gesv returned %d", (int)info);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -117,9 +120,6 @@ static PetscErrorCode AbutFrictionZone_Private(AbutContactModel model, PetscReal
   PetscCall(AbutFrictionBalance_Private(model, na, a, loose, stiffness));
   if (*loose >= 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArrayzero(x, n));
-  PetscCall(PetscArraycpy(g, model->b, n));
-  for (PetscInt k = 0; k < m; ++k)
-    for (PetscInt i = 0; i < n; ++i) g[i] += a[k] * model->G[k * n + i];
   for (PetscInt j = 0; j < na; ++j) {
     const PetscInt  c     = model->active[j];
     const PetscReal share = AbutFrictionShare_Private(model, c);
@@ -128,10 +128,10 @@ static PetscErrorCode AbutFrictionZone_Private(AbutContactModel model, PetscReal
     for (PetscInt k = 0; k < m; ++k) x[c] += a[k] * model->X[k * na + j];
     if (share != 0.) x[model->friction->tangent[c]] = share * x[c];
   }
-  for (PetscInt c = 0; c < n; ++c) {
-    if (x[c] == 0.) continue;
-    for (PetscInt i = 0; i < n; ++i) g[i] -= model->S[c * n + i] * x[c];
-    g[c] -= model->soft[c] * x[c];
+  PetscCall(AbutComplianceMult_Private(model->S, x, g));
+  for (PetscInt i = 0; i < n; ++i) {
+    g[i] = model->b[i] - g[i] - model->soft[i] * x[i];
+    for (PetscInt k = 0; k < m; ++k) g[i] += a[k] * model->G[k * n + i];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -193,7 +193,7 @@ static void AbutFrictionTouching_Private(AbutContactModel model, const PetscReal
   }
   for (PetscInt c = 0; c < model->n; ++c)
     if (model->friction->normal[c] < 0 &&
-        (x[c] <= ABUT_ROUNDOFF * largest || !(loaded || x[c] * model->S[c * model->n + c] > ABUT_SINGULAR * gap)))
+        (x[c] <= ABUT_ROUNDOFF * largest || !(loaded || x[c] * model->S->a[c * model->n + c] > ABUT_SINGULAR * gap)))
       model->friction->zone[c] = ABUT_OPEN;
 }
 
@@ -257,10 +257,8 @@ PetscErrorCode AbutContactModelSolveFriction_Private(AbutContactModel model, con
   PetscCall(PetscMalloc1(n, &g));
   if (!model->friction->spring) PetscCall(PetscCalloc1(model->m, &model->friction->spring));
   AbutFrictionBegin_Private(model, r, F);
-  for (PetscInt i = 0; i < n; ++i) {
-    model->b[i] = r[i] + model->soft[i] * F[i];
-    for (PetscInt j = 0; j < n; ++j) model->b[i] += model->S[i * n + j] * F[j];
-  }
+  PetscCall(AbutComplianceMult_Private(model->S, F, model->b));
+  for (PetscInt i = 0; i < n; ++i) model->b[i] += r[i] + model->soft[i] * F[i];
   *loose = -1;
   PetscCall(AbutFrictionSettle_Private(model, d, g, a, loose, solved));
   if (*loose >= 0) *solved = PETSC_FALSE;

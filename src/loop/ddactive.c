@@ -105,7 +105,8 @@ static PetscErrorCode AbutActiveWhole_Private(AbutActive *s, PetscReal *whole)
     own += PetscMax(0., work);
   }
   for (PetscInt i = 0; i < s->model->n; ++i) own += s->model->soft[i] * PetscSqr(s->F[i]);
-  *whole = PetscMin(own, AbutContactModelEnergy_Private(s->model, s->model->soft, s->F));
+  PetscCall(AbutContactModelEnergy_Private(s->model, s->model->soft, s->F, whole));
+  *whole = PetscMin(own, *whole);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -129,8 +130,8 @@ static PetscErrorCode AbutActivePredict_Private(AbutActive *s, SNES snes, PetscR
   }
   PetscCall(AbutActiveMove_Private(s));
   PetscCall(AbutActiveWhole_Private(s, &whole));
-  change = AbutContactModelEnergy_Private(model, model->soft, s->d);
-  *left  = change > 0. ? PetscSqrtReal(change / PetscMax(whole, change)) : 0.;
+  PetscCall(AbutContactModelEnergy_Private(model, model->soft, s->d, &change));
+  *left = change > 0. ? PetscSqrtReal(change / PetscMax(whole, change)) : 0.;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -231,8 +232,9 @@ static PetscErrorCode SNESView_DDActive(PETSC_UNUSED SNES snes, PetscViewer view
    SNESDDACTIVE - Primal-dual active set on the nodal contact forces of all pairs; the default
 
    Options Database Keys:
-+  -snes_rtol <1e-8>    - on the energy of what is still to be changed, relative to the energy of the contact
--  -snes_max_it <10000> - steps; each is one sweep, that is one solve in every body
++  -snes_rtol <1e-8>           - on the energy of what is still to be changed, relative to the energy of the contact
+.  -snes_max_it <10000>        - steps; each is one sweep, that is one solve in every body
+-  -snes_ddactive_share <1000> - contact nodes above which the ranks share the model, see `AbutInterfaceSetShare()`
 
    Level: beginner
 
@@ -259,7 +261,7 @@ static PetscErrorCode SNESView_DDActive(PETSC_UNUSED SNES snes, PetscViewer view
    cycling (the zone of the model does not settle), floating (contact does not hold a body), linear_solver, max_iterations.
 
    Limits: the model is dense in the contact nodes of all pairs, n: some 40 n^2 bytes, some n^3 operations a mesh and n^3/3 for each zone
-   that is tried; with friction a node counts twice. Bodies that are no boxes are known at first as the layers of their bounding boxes. With
+   that is tried, which the ranks share above a size; with friction they do not, and a node counts twice. Bodies that are no boxes are known at first as the layers of their bounding boxes. With
    friction next to incompressible (nu = 0.4999 was tried) it may end in stagnation.
 
    Sources: Hintermueller, Ito, Kunisch, SIAM J. Optim. 13 (2002), the active set; Farhat, Roux, IJNME 32 (1991), the balance of floating

@@ -43,11 +43,13 @@ static PetscErrorCode AbutInterfaceContactErrors_Private(AbutInterface f, PetscR
   for (PetscInt i = 0; i < model->n; ++i)
     if (model->soft[i] > 0.) soft = PETSC_TRUE;
   PetscCall(AbutInterfaceAsk_Private(f, model, model->soft, F, d, solved));
-  *loop = PetscSqrtReal(AbutContactModelEnergy_Private(model, NULL, d));
+  PetscCall(AbutContactModelEnergy_Private(model, NULL, d, loop));
+  *loop = PetscSqrtReal(*loop);
   if (soft && *solved) {
     PetscCall(AbutInterfaceAsk_Private(f, model, exact, F, e, solved));
     for (PetscInt i = 0; i < model->n; ++i) e[i] -= d[i];
-    *penalty = ABUT_SAFETY * PetscSqrtReal(AbutContactModelEnergy_Private(model, NULL, e));
+    PetscCall(AbutContactModelEnergy_Private(model, NULL, e, penalty));
+    *penalty = ABUT_SAFETY * PetscSqrtReal(*penalty);
     for (PetscInt i = 0; i < f->npairs; ++i)
       for (PetscInt c = model->first[i]; c < model->first[i] + model->normals[i]; ++c) force[i] += ABUT_SAFETY * e[c];
   }

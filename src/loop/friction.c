@@ -43,6 +43,7 @@ PetscErrorCode AbutModelFrictionDestroy_Private(AbutModelFriction *friction)
   PetscCall(PetscFree4((*friction)->normal, (*friction)->tangent, (*friction)->mu, (*friction)->zone));
   for (PetscInt i = 0; i < 2; ++i) PetscCall(PetscFree((*friction)->learned[i]));
   PetscCall(PetscFree((*friction)->S0));
+  PetscCall(PetscFree((*friction)->M));
   PetscCall(PetscFree((*friction)->spring));
   PetscCall(PetscFree(*friction));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -108,9 +109,9 @@ static PetscErrorCode AbutModelFrictionRebuild_Private(AbutContactModel model)
   PetscCallBLAS("LAPACKpotrf", LAPACKpotrf_("L", &bk, C, &bk, &info));
   if (!info) {
     PetscCallBLAS("BLAStrsm", BLAStrsm_("R", "L", "T", "N", &bn, &bk, &one, C, &bk, B, &bn));
-    PetscCall(PetscArraycpy(model->S, friction->S0, n * n));
-    PetscCallBLAS("BLASgemm", BLASgemm_("N", "T", &bn, &bn, &bk, &minus, B, &bn, B, &bn, &one, model->S, &bn));
-    PetscCallBLAS("BLASgemm", BLASgemm_("N", "T", &bn, &bn, &bk, &one, W, &bn, W, &bn, &one, model->S, &bn));
+    PetscCall(PetscArraycpy(model->S->a, friction->S0, n * n));
+    PetscCallBLAS("BLASgemm", BLASgemm_("N", "T", &bn, &bn, &bk, &minus, B, &bn, B, &bn, &one, model->S->a, &bn));
+    PetscCallBLAS("BLASgemm", BLASgemm_("N", "T", &bn, &bn, &bk, &one, W, &bn, W, &bn, &one, model->S->a, &bn));
   } else --friction->nlearned; /* the last direction is round-off */
   PetscCall(PetscFree2(B, C));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -127,7 +128,7 @@ PetscErrorCode AbutContactModelLearnFriction_Private(AbutContactModel model, con
   PetscFunctionBegin;
   if (!friction->S0) {
     PetscCall(PetscMalloc1(n * n, &friction->S0));
-    PetscCall(PetscArraycpy(friction->S0, model->S, n * n));
+    PetscCall(PetscArraycpy(friction->S0, model->S->a, n * n));
   }
   for (PetscInt i = 0; i < 2; ++i) PetscCall(PetscRealloc((k + 1) * n * sizeof(PetscReal), &friction->learned[i]));
   v = friction->learned[0] + k * n;

@@ -44,7 +44,7 @@ PetscErrorCode AbutInterfaceSetSpectrum(AbutInterface iface, PetscBool computed)
 }
 
 /*@
-   AbutInterfaceSetFromOptions - Reads the relaxation from the options
+   AbutInterfaceSetGammaFromOptions - Reads the relaxation from the options
 
    Collective
 
@@ -57,9 +57,9 @@ PetscErrorCode AbutInterfaceSetSpectrum(AbutInterface iface, PetscBool computed)
 
    Level: intermediate
 
-.seealso: `AbutInterfaceSetGamma()`, `AbutInterfaceSetSpectrum()`, `SNESDDNEUMANN`
+.seealso: `AbutInterfaceSetGamma()`, `AbutInterfaceSetSpectrum()`, `AbutInterfaceSetFromOptions()`, `SNESDDNEUMANN`
 @*/
-PetscErrorCode AbutInterfaceSetFromOptions(AbutInterface iface)
+PetscErrorCode AbutInterfaceSetGammaFromOptions(AbutInterface iface)
 {
   PetscReal gamma    = iface->gamma;
   PetscBool spectrum = iface->spectrum;

@@ -21,7 +21,7 @@ PetscLogEvent ABUTINTERFACE_Sweep;
    Level: intermediate
 
    Note:
-   Limits: all bodies live on the whole communicator and are solved one after the other; the trace is kept on every rank.
+   Limits: the trace is kept on every rank, and so is the contact model up to the size of `AbutInterfaceSetShare()`.
 
 .seealso: `AbutInterfaceSetUp()`, `AbutInterfaceSweep()`, `AbutInterfaceSetSNES()`, `AbutInterfaceDestroy()`
 @*/
@@ -36,6 +36,7 @@ PetscErrorCode AbutInterfaceCreate(MPI_Comm comm, PetscInt nbodies, AbutBody bod
                               AbutInterfaceDestroy, NULL));
   f->nbodies = nbodies;
   f->npairs  = npairs;
+  f->share   = ABUT_MODEL_SHARE;
   PetscCall(PetscMalloc2(nbodies, &f->body, npairs, &f->pair));
   for (PetscInt i = 0; i < nbodies; ++i) {
     PetscCall(PetscObjectReference((PetscObject)bodies[i]));

@@ -1,4 +1,4 @@
-#include <abut/private/loopimpl.h>
+#include <abut/private/loopimpl.h> /*I "abutloop.h" I*/
 
 /* The contact model of an interface: its nodes, the layers' compliance, the free motions of its bodies; and how it learns from sweeps */
 
@@ -93,7 +93,28 @@ PetscErrorCode AbutContactModelOpen_Private(AbutInterface f, AbutContactModel mo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-#define ABUT_CONTACT_NODES 30000 /* 7 GB for the compliance alone */
+#define ABUT_CONTACT_NODES 30000 /* 7 GB for the compliance alone, on a rank that has it all */
+
+/* The compliance of the layers. With friction every rank has it all: coulomb.c looks into it. */
+static PetscErrorCode AbutContactModelCompliance_Private(AbutInterface f, AbutContactModel model)
+{
+  MPI_Comm       comm  = PetscObjectComm((PetscObject)f);
+  const PetscInt share = model->friction ? PETSC_MAX_INT : f->share;
+  PetscMPIInt    size;
+  PetscInt       most = ABUT_CONTACT_NODES;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  if (model->n > share) most = (PetscInt)(most * PetscSqrtReal(size));
+  AbutCheckInput(model->n <= most, comm,
+                 "scene_pairs: %" PetscInt_FMT
+                 " contact nodes are too many for the dense contact model; give larger cells on the contact sides, at most %" PetscInt_FMT
+                 " nodes",
+                 model->n, most);
+  PetscCall(AbutComplianceCreate_Private(comm, model->n, share, &model->S));
+  PetscCall(AbutInterfaceLayers_Private(f, model));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 /* The model of the present meshes */
 PetscErrorCode AbutInterfaceGetModel_Private(AbutInterface f, AbutContactModel *model)
@@ -104,14 +125,9 @@ PetscErrorCode AbutInterfaceGetModel_Private(AbutInterface f, AbutContactModel *
     PetscCall(AbutContactModelNodes_Private(f, f->model));
     PetscCall(AbutContactModelFriction_Private(f, f->model));
     PetscCall(AbutContactModelOpen_Private(f, f->model));
-    AbutCheckInput(f->model->n <= ABUT_CONTACT_NODES, PetscObjectComm((PetscObject)f),
-                   "scene_pairs: %" PetscInt_FMT
-                   " contact nodes are too many for the dense contact model; give larger cells on the contact sides, at most %d nodes",
-                   f->model->n, ABUT_CONTACT_NODES);
-    PetscCall(PetscCalloc1(f->model->n * f->model->n, &f->model->S));
-    PetscCall(AbutInterfaceLayers_Private(f, f->model));
+    PetscCall(AbutContactModelCompliance_Private(f, f->model));
     PetscCall(AbutContactModelMotions_Private(f, f->model));
-    PetscCall(PetscMalloc2(f->model->n * f->model->n, &f->model->factor, f->model->n * (f->model->m + 1), &f->model->X));
+    PetscCall(PetscMalloc1(f->model->n * (f->model->m + 1), &f->model->X));
   }
   *model = f->model;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -124,9 +140,9 @@ PetscErrorCode AbutContactModelDestroy_Private(AbutContactModel *model)
   PetscCall(PetscFree2((*model)->first, (*model)->normals));
   PetscCall(AbutModelFrictionDestroy_Private(&(*model)->friction));
   PetscCall(PetscFree6((*model)->node, (*model)->D, (*model)->soft, (*model)->open, (*model)->b, (*model)->active));
-  PetscCall(PetscFree((*model)->S));
+  PetscCall(AbutComplianceDestroy_Private(&(*model)->S));
   PetscCall(PetscFree4((*model)->G, (*model)->e, (*model)->owner, (*model)->mode));
-  PetscCall(PetscFree2((*model)->factor, (*model)->X));
+  PetscCall(PetscFree((*model)->X));
   for (PetscInt b = 0; b < (*model)->nbodies; ++b) {
     PetscCall(VecDestroy(&(*model)->force[b]));
     PetscCall(VecDestroy(&(*model)->w[b]));
@@ -172,17 +188,17 @@ void AbutContactModelForces_Private(const AbutContactModel model, PetscInt npair
 }
 
 /* Energy v'(S + soft)v of contact forces v; soft may be NULL: the square of the energy norm of the displacements they make */
-PetscReal AbutContactModelEnergy_Private(const AbutContactModel model, const PetscReal soft[], const PetscReal v[])
+PetscErrorCode AbutContactModelEnergy_Private(AbutContactModel model, const PetscReal soft[], const PetscReal v[], PetscReal *energy)
 {
-  PetscReal e = 0.;
+  PetscReal e = 0., *Sv;
 
-  for (PetscInt i = 0; i < model->n; ++i) {
-    PetscReal Sv = soft ? soft[i] * v[i] : 0.;
-
-    for (PetscInt j = 0; j < model->n; ++j) Sv += model->S[i * model->n + j] * v[j];
-    e += v[i] * Sv;
-  }
-  return PetscMax(0., e);
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(model->n, &Sv));
+  PetscCall(AbutComplianceMult_Private(model->S, v, Sv));
+  for (PetscInt i = 0; i < model->n; ++i) e += v[i] * (Sv[i] + (soft ? soft[i] * v[i] : 0.));
+  PetscCall(PetscFree(Sv));
+  *energy = PetscMax(0., e);
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode AbutContactModelVectors_Private(AbutInterface f, AbutContactModel model)
@@ -221,18 +237,90 @@ PetscErrorCode AbutInterfaceComply_Private(AbutInterface f, AbutContactModel mod
    by the first S (Nazareth, SIAM J. Numer. Anal. 16, 1979). */
 PetscErrorCode AbutContactModelLearn_Private(AbutContactModel model, const PetscReal d[], const PetscReal q[])
 {
-  const PetscInt n  = model->n;
-  PetscReal     *Sd = model->b, dSd = 0., dq = 0.;
+  const PetscInt n   = model->n;
+  PetscReal      dSd = 0., dq = 0., *V, *W;
 
   PetscFunctionBegin;
+  PetscCall(PetscMalloc2(2 * n, &V, 2 * n, &W));
+  PetscCall(AbutComplianceMult_Private(model->S, d, W));
   for (PetscInt i = 0; i < n; ++i) {
-    Sd[i] = 0.;
-    for (PetscInt j = 0; j < n; ++j) Sd[i] += model->S[i * n + j] * d[j];
-    dSd += d[i] * Sd[i];
+    dSd += d[i] * W[i];
     dq += d[i] * q[i];
   }
-  if (dSd <= 0. || dq <= 0.) PetscFunctionReturn(PETSC_SUCCESS); /* a direction below round-off teaches nothing */
-  for (PetscInt i = 0; i < n; ++i)
-    for (PetscInt j = 0; j < n; ++j) model->S[i * n + j] += q[i] * q[j] / dq - Sd[i] * Sd[j] / dSd;
+  if (dSd > 0. && dq > 0.) { /* a direction below round-off teaches nothing */
+    for (PetscInt i = 0; i < n; ++i) {
+      W[i] /= PetscSqrtReal(dSd);
+      W[n + i] = q[i] / PetscSqrtReal(dq);
+      V[i]     = -W[i];
+      V[n + i] = W[n + i];
+    }
+    PetscCall(AbutComplianceAdd_Private(model->S, 2, V, W));
+  }
+  PetscCall(PetscFree2(V, W));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutInterfaceSetShare - Sets the size above which the ranks share the matrix of the contact model
+
+   Logically Collective
+
+   Input Parameters:
++  iface - the map, not set up
+-  nodes - contact nodes of all pairs up to which every rank keeps the matrix of them all
+
+   Level: intermediate
+
+   Notes:
+   Shared, a rank keeps n^2/p of its numbers and does n^3/p of the operations, and ScaLAPACK factors it. Below some size that takes longer
+   than what every rank does for itself.
+
+   Limits: needs a PETSc with ScaLAPACK. With friction every rank keeps the matrix of all nodes, whatever the size.
+
+.seealso: `AbutInterfaceSetFromOptions()`, `SNESDDACTIVE`
+@*/
+PetscErrorCode AbutInterfaceSetShare(AbutInterface iface, PetscInt nodes)
+{
+  PetscFunctionBegin;
+  iface->share = nodes;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+   AbutInterfaceSetFromOptions - Reads from the options how the contact model is kept
+
+   Collective
+
+   Input Parameter:
+.  iface - the map, not set up
+
+   Options Database Key:
+.  -snes_ddactive_share <1000> - contact nodes above which the ranks share the contact model, see `AbutInterfaceSetShare()`
+
+   Level: intermediate
+
+   Note:
+   Relaxations are read by `AbutInterfaceSetGammaFromOptions()`, since not every loop has one.
+
+.seealso: `AbutInterfaceSetShare()`, `AbutInterfaceSetGammaFromOptions()`, `SNESDDACTIVE`
+@*/
+PetscErrorCode AbutInterfaceSetFromOptions(AbutInterface iface)
+{
+  MPI_Comm  comm  = PetscObjectComm((PetscObject)iface);
+  PetscInt  share = iface->share;
+  PetscBool given;
+
+  PetscFunctionBegin;
+  PetscObjectOptionsBegin((PetscObject)iface);
+  PetscCall(AbutOptionsInt(PetscOptionsObject, "-snes_ddactive_share", "Contact nodes above which the ranks share the contact model",
+                           &share, &given));
+  PetscOptionsEnd();
+  AbutCheckInput(share >= 0, comm, "snes_ddactive_share: %" PetscInt_FMT "; give a number of contact nodes, 0 to share any contact model",
+                 share);
+#if !defined(PETSC_HAVE_SCALAPACK)
+  AbutCheckInput(!given, comm,
+                 "snes_ddactive_share: this PETSc has no ScaLAPACK, so that every rank keeps the contact model; leave it out");
+#endif
+  PetscCall(AbutInterfaceSetShare(iface, share));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

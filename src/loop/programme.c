@@ -10,21 +10,15 @@
 static PetscErrorCode AbutContactModelActive_Private(AbutContactModel model, PetscInt na)
 {
   const PetscInt *active = model->active, n = model->n, m = model->m;
-  PetscBLASInt    bn, columns, info;
 
   PetscFunctionBegin;
   if (!na) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt j = 0; j < na; ++j) {
-    for (PetscInt i = 0; i < na; ++i) model->factor[j * na + i] = model->S[active[j] * n + active[i]];
-    model->factor[j * na + j] += model->soft[active[j]];
     for (PetscInt k = 0; k < m; ++k) model->X[k * na + j] = model->G[k * n + active[j]];
     model->X[m * na + j] = model->b[active[j]];
   }
-  PetscCall(PetscBLASIntCast(na, &bn));
-  PetscCall(PetscBLASIntCast(m + 1, &columns));
-  PetscCallBLAS("LAPACKpotrf", LAPACKpotrf_("L", &bn, model->factor, &bn, &info));
-  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "The contact model is not positive definite: LAPACK potrf returned %d", (int)info);
-  PetscCallBLAS("LAPACKpotrs", LAPACKpotrs_("L", &bn, &columns, model->factor, &bn, model->X, &bn, &info));
+  PetscCall(AbutComplianceFactor_Private(model->S, na, active, model->soft));
+  PetscCall(AbutComplianceSolve_Private(model->S, m + 1, model->X));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -85,16 +79,16 @@ static PetscErrorCode AbutContactModelZone_Private(AbutContactModel model, const
   PetscCall(AbutContactModelBalance_Private(model, na, a, loose));
   if (*loose >= 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArrayzero(F, n));
-  PetscCall(PetscArraycpy(g, model->b, n));
-  for (PetscInt k = 0; k < m; ++k)
-    for (PetscInt i = 0; i < n; ++i) g[i] += a[k] * model->G[k * n + i];
   for (PetscInt j = 0; j < na; ++j) {
     PetscReal *f = F + model->active[j];
 
     *f = model->X[m * na + j];
     for (PetscInt k = 0; k < m; ++k) *f += a[k] * model->X[k * na + j];
-    for (PetscInt i = 0; i < n; ++i) g[i] -= model->S[model->active[j] * n + i] * *f;
-    g[model->active[j]] -= model->soft[model->active[j]] * *f;
+  }
+  PetscCall(AbutComplianceMult_Private(model->S, F, g));
+  for (PetscInt i = 0; i < n; ++i) {
+    g[i] = model->b[i] - g[i] - model->soft[i] * F[i];
+    for (PetscInt k = 0; k < m; ++k) g[i] += a[k] * model->G[k * n + i];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -131,11 +125,14 @@ static PetscInt AbutContactModelExchange_Private(AbutContactModel model, const P
 }
 
 /* Nodes that touch without force do not hold a body. Where nothing is loaded all forces may be round-off of the gaps that were closed. */
-static void AbutContactModelTouching_Private(AbutContactModel model, const PetscReal F[], PetscBool zone[])
+static PetscErrorCode AbutContactModelTouching_Private(AbutContactModel model, const PetscReal F[], PetscBool zone[])
 {
-  PetscReal largest = 0., gap = 0.;
+  PetscReal largest = 0., gap = 0., *diagonal;
   PetscBool loaded = PETSC_FALSE;
 
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(model->n, &diagonal));
+  PetscCall(AbutComplianceGetDiagonal_Private(model->S, diagonal));
   for (PetscInt k = 0; k < model->m; ++k)
     if (model->e[k] != 0.) loaded = PETSC_TRUE;
   for (PetscInt i = 0; i < model->n; ++i) {
@@ -143,7 +140,9 @@ static void AbutContactModelTouching_Private(AbutContactModel model, const Petsc
     gap     = PetscMax(gap, PetscAbsReal(model->b[i]));
   }
   for (PetscInt i = 0; i < model->n; ++i)
-    zone[i] = (PetscBool)(F[i] > ABUT_ROUNDOFF * largest && (loaded || F[i] * model->S[i * model->n + i] > ABUT_SINGULAR * gap));
+    zone[i] = (PetscBool)(F[i] > ABUT_ROUNDOFF * largest && (loaded || F[i] * diagonal[i] > ABUT_SINGULAR * gap));
+  PetscCall(PetscFree(diagonal));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Closes for every loaded motion the node that it closes first, and opens all others */
@@ -193,13 +192,12 @@ PetscErrorCode AbutContactModelSolve_Private(AbutContactModel model, const Petsc
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(PetscMalloc2(n, &zone, n, &g));
+  PetscCall(AbutComplianceMult_Private(model->S, F, model->b));
   for (PetscInt i = 0; i < n; ++i) {
     zone[i] = (PetscBool)(F[i] > 0.);
     if (zone[i]) any = PETSC_TRUE;
-    model->b[i] = r[i] + model->soft[i] * F[i];
+    model->b[i] += r[i] + model->soft[i] * F[i];
   }
-  for (PetscInt i = 0; i < n; ++i)
-    for (PetscInt j = 0; j < n; ++j) model->b[i] += model->S[i * n + j] * F[j];
   for (PetscInt i = 0; i < n && !any; ++i) zone[i] = (PetscBool)(model->m || r[i] > 0.);
   *loose = -1;
   for (PetscInt it = 0; wrong && it < 100 + 10 * n; ++it) {
@@ -211,7 +209,7 @@ PetscErrorCode AbutContactModelSolve_Private(AbutContactModel model, const Petsc
     } else wrong = AbutContactModelExchange_Private(model, d, g, &least, &patience, zone);
   }
   if (!wrong && model->m) {
-    AbutContactModelTouching_Private(model, d, zone);
+    PetscCall(AbutContactModelTouching_Private(model, d, zone));
     PetscCall(AbutContactModelZone_Private(model, zone, d, g, a, loose));
   }
   *solved = (PetscBool)(!wrong && *loose < 0);

@@ -128,8 +128,9 @@ PetscErrorCode AbutSceneSolverFromOptions_Private(AbutScene scene)
     PetscOptionsBegin(comm, NULL, "Start of the loop", NULL);
     PetscCall(AbutOptionsEnum(PetscOptionsObject, "-snes_ddneumann_start", "First trace", AbutStarts, &scene->start, NULL));
     PetscOptionsEnd();
-    PetscCall(AbutInterfaceSetFromOptions(scene->iface));
+    PetscCall(AbutInterfaceSetGammaFromOptions(scene->iface));
   }
+  PetscCall(AbutInterfaceSetFromOptions(scene->iface));
   PetscCall(SNESSetType(scene->snes, scene->interleave ? SNESDDNEUMANN : SNESDDACTIVE));
   if (!strcmp(type, SNESANDERSON)) PetscCall(AbutSceneAndersonOptions_Private(scene));
   else PetscCall(AbutSceneReadSolver_Private(scene));

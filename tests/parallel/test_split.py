@@ -24,7 +24,7 @@ def test_the_record_is_that_of_one_rank():
     scenes = {
         "layers, both adapted": (LAYERS, (ACTIVE, adapted), (2, 5), 1e-10),
         "stack": (os.path.join(EXAMPLES, "stack", "stack.yml"), ("-snes_rtol 1e-12",), (2, 3), 1e-10),
-        "gravity": (os.path.join(EXAMPLES, "gravity", "gravity.yml"), (), (3,), 1e-9),
+        "gravity": (os.path.join(EXAMPLES, "gravity", "gravity.yml"), ("-snes_rtol 1e-12",), (3,), 1e-9),
     }
     for name, (scene, options, several, most) in scenes.items():
         one = run(scene, *options, limit=200)

@@ -17,6 +17,18 @@ typedef enum {
   ABUT_OPEN       = 2
 } AbutZone;
 
+/* The compliance of the contact nodes, n*n, symmetric: see compliance.c */
+typedef struct {
+  MPI_Comm    comm;
+  PetscMPIInt size, *counts, *first; /* [size], [size+1] columns that each rank computes */
+  PetscInt    n, from, to;           /* those of this one */
+  PetscBool   shared;                /* a has these, n*(to-from), and not all */
+  PetscReal  *a;
+  PetscInt    nactive; /* of the last factors */
+  PetscReal  *lapack;  /* room for n*n */
+  Mat         scalapack;
+} *AbutCompliance;
+
 /* Of contact models with friction: unknowns are then contact forces and tangential forces */
 typedef struct {
   PetscInt  *normal, *tangent; /* [n] the contact force that bounds a tangential one, and back; -1 if it is none, or there is none */
@@ -25,6 +37,7 @@ typedef struct {
   PetscReal *spring;           /* [m] what resists free motions beside contact while zones are sought; force over motion */
   PetscInt   nlearned;
   PetscReal *learned[2], *S0; /* [nlearned*n] forces of all sweeps, conjugate, and what they took; [n*n] the model before it learned */
+  PetscReal *M;               /* [n*n] work */
 } *AbutModelFriction;
 
 /* What the loop knows of the bodies without solving them: nodal contact forces F -> penetrations of the contact nodes of all pairs.
@@ -38,16 +51,34 @@ typedef struct {
   PetscInt         *normals;      /* [npairs] contact nodes of each pair */
   PetscReal        *D, *soft;     /* [n] nodal lengths; theta/D */
   PetscReal        *open;         /* [n] penetrations of bodies that stand still: minus the gap */
-  PetscReal        *S;            /* [n*n] at first the layers' compliance, then corrected by every sweep */
+  AbutCompliance    S;            /* at first that of the layers, then corrected by every sweep */
   PetscReal        *G, *e;        /* [m*n] penetrations by unit motions; [m] resultants of the loads along them */
   PetscInt         *owner, *mode; /* [m] whose motion, and its number there */
-  PetscReal        *factor, *X;   /* [n*n], [(m+1)*n] work */
+  PetscReal        *X;            /* [(m+1)*n] work */
   PetscInt          nbodies;      /* once AbutInterfaceComply_Private() has been called */
   Vec              *force, *w;    /* [nbodies] of its last call: nodal forces on the bodies, displacements they make */
   PetscReal        *b;            /* [n] work */
   PetscInt         *active;       /* [n] work */
   AbutModelFriction friction;     /* NULL: no pair has any */
 } *AbutContactModel;
+
+/* A block of the modes of side t = 2*pair+side: K v = xi^2 D v on its nodes, with the one-dimensional stiffness K, natural ends, lumped
+   lengths D and V'DV = I */
+typedef struct {
+  PetscInt   n;     /* of the block; blocks of a rank begin at the same mode on all sides */
+  PetscInt   first; /* first contact node of the pair, and how many */
+  PetscInt   rows;
+  PetscReal *xi; /* [n] ascending */
+  PetscReal *W;  /* [rows*n] by columns: penetrations of the pair's contact nodes when the side takes the shape of a mode */
+  PetscReal  length;
+} AbutModes;
+
+/* Contact nodes above which the ranks share the contact model's matrix */
+#if defined(PETSC_HAVE_SCALAPACK)
+  #define ABUT_MODEL_SHARE 1000
+#else
+  #define ABUT_MODEL_SHARE PETSC_MAX_INT
+#endif
 
 struct _p_AbutInterface {
   PETSCHEADER(int);
@@ -64,6 +95,7 @@ struct _p_AbutInterface {
   PetscInt        *place;  /* [all] the place of the k-th value in the order of the ranks */
   VecScatter       toall;
   Vec              everywhere;
+  PetscInt         share;     /* contact nodes above which the ranks share the contact model's matrix */
   PetscReal        gamma;     /* the user's relaxation, 0 for the automatic one */
   PetscBool        spectrum;  /* the automatic one from computed eigenvalues */
   PetscReal        largest;   /* eigenvalue of I - dG, computed on these meshes; 0 not yet */
@@ -113,6 +145,23 @@ PETSC_INTERN PetscErrorCode AbutInterfaceSetMixing_Private(AbutInterface, SNES);
 PETSC_INTERN PetscErrorCode AbutInterfaceCheckSpectrum_Private(AbutInterface);
 PETSC_INTERN PetscErrorCode AbutInterfaceComputeSpectrum_Private(AbutInterface, PetscReal *);
 
+/* compliance.c, factor.c */
+PETSC_EXTERN PetscErrorCode AbutComplianceCreate_Private(MPI_Comm, PetscInt, PetscInt, AbutCompliance *);
+PETSC_EXTERN PetscErrorCode AbutComplianceDestroy_Private(AbutCompliance *);
+PETSC_EXTERN PetscReal     *AbutComplianceGetColumns_Private(AbutCompliance, PetscInt *, PetscInt *);
+PETSC_EXTERN PetscErrorCode AbutComplianceAssemble_Private(AbutCompliance);
+PETSC_EXTERN PetscErrorCode AbutComplianceMult_Private(AbutCompliance, const PetscReal[], PetscReal[]);
+PETSC_EXTERN PetscErrorCode AbutComplianceAdd_Private(AbutCompliance, PetscInt, const PetscReal[], const PetscReal[]);
+PETSC_EXTERN PetscErrorCode AbutComplianceGetDiagonal_Private(AbutCompliance, PetscReal[]);
+PETSC_EXTERN PetscErrorCode AbutComplianceFactor_Private(AbutCompliance, PetscInt, const PetscInt[], const PetscReal[]);
+PETSC_EXTERN PetscErrorCode AbutComplianceSolve_Private(AbutCompliance, PetscInt, PetscReal[]);
+PETSC_INTERN PetscErrorCode AbutComplianceFreeFactor_Private(AbutCompliance);
+
+/* waves.c */
+PETSC_INTERN PetscErrorCode AbutModesCreate_Private(AbutInterface, AbutContactModel, AbutModes[], PetscInt *);
+PETSC_INTERN PetscErrorCode AbutModesShare_Private(AbutInterface, AbutContactModel, PetscMPIInt, PetscInt, const AbutModes[], AbutModes[]);
+PETSC_INTERN PetscErrorCode AbutModesDestroy_Private(AbutInterface, AbutModes[]);
+
 /* layers.c, model.c, programme.c: the contact model */
 PETSC_EXTERN PetscErrorCode AbutInterfaceGetModel_Private(AbutInterface, AbutContactModel *);
 PETSC_INTERN PetscErrorCode AbutInterfaceLayers_Private(AbutInterface, AbutContactModel);
@@ -123,7 +172,7 @@ PETSC_EXTERN PetscErrorCode AbutContactModelSolve_Private(AbutContactModel, cons
                                                           PetscInt *, PetscBool *);
 PETSC_INTERN void           AbutContactModelPressures_Private(const AbutContactModel, PetscInt, const PetscReal[], PetscReal *const[]);
 PETSC_INTERN void           AbutContactModelForces_Private(const AbutContactModel, PetscInt, PetscReal *const[], PetscReal[]);
-PETSC_INTERN PetscReal      AbutContactModelEnergy_Private(const AbutContactModel, const PetscReal[], const PetscReal[]);
+PETSC_EXTERN PetscErrorCode AbutContactModelEnergy_Private(AbutContactModel, const PetscReal[], const PetscReal[], PetscReal *);
 PETSC_INTERN PetscErrorCode AbutContactModelOpen_Private(AbutInterface, AbutContactModel);
 /* friction.c, coulomb.c: only with friction, but for the first two */
 PETSC_INTERN PetscErrorCode AbutContactModelFriction_Private(AbutInterface, AbutContactModel);

@@ -1,0 +1,112 @@
+#include <abut/private/loopimpl.h>
+#include <petscblaslapack.h>
+
+/*
+   The compliance of the contact nodes, a symmetric dense matrix: products, sums with vv', factors of its part in some nodes.
+   Columns are computed by all ranks, each its own. Then every rank gets them all; or, above a size, the ranks go on to share them, and with
+   them the n^2 numbers and n^3 operations: products are put together from those of the ranks, and ScaLAPACK factors.
+   Vectors are whole on every rank. Results are the same, to the last bit, on all ranks: they decide alike.
+*/
+
+/* S = 0. The ranks share it if there are more than share nodes. */
+PetscErrorCode AbutComplianceCreate_Private(MPI_Comm comm, PetscInt n, PetscInt share, AbutCompliance *compliance)
+{
+  AbutCompliance S;
+  PetscMPIInt    rank;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&S));
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCallMPI(MPI_Comm_size(comm, &S->size));
+  S->comm   = comm;
+  S->n      = n;
+  S->shared = (PetscBool)(S->size > 1 && n > share);
+  PetscCall(PetscMalloc2(S->size, &S->counts, S->size + 1, &S->first));
+  for (PetscMPIInt r = 0; r <= S->size; ++r) S->first[r] = (PetscMPIInt)((PetscInt64)n * r / S->size);
+  for (PetscMPIInt r = 0; r < S->size; ++r) S->counts[r] = S->first[r + 1] - S->first[r];
+  S->from = S->first[rank];
+  S->to   = S->first[rank + 1];
+  PetscCall(PetscCalloc1((size_t)n * (S->shared ? S->to - S->from : n), &S->a));
+  *compliance = S;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AbutComplianceDestroy_Private(AbutCompliance *S)
+{
+  PetscFunctionBegin;
+  if (!*S) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AbutComplianceFreeFactor_Private(*S));
+  PetscCall(PetscFree2((*S)->counts, (*S)->first));
+  PetscCall(PetscFree((*S)->a));
+  PetscCall(PetscFree(*S));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The columns from..to-1 that this rank computes, one after the other; then AbutComplianceAssemble_Private() */
+PetscReal *AbutComplianceGetColumns_Private(AbutCompliance S, PetscInt *from, PetscInt *to)
+{
+  *from = S->from;
+  *to   = S->to;
+  return S->shared ? S->a : S->a + (size_t)S->n * S->from;
+}
+
+PetscErrorCode AbutComplianceAssemble_Private(AbutCompliance S)
+{
+  MPI_Datatype column;
+
+  PetscFunctionBegin;
+  if (S->size == 1 || S->shared) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)S->n, MPIU_REAL, &column));
+  PetscCallMPI(MPI_Type_commit(&column));
+  PetscCallMPI(MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, S->a, S->counts, S->first, column, S->comm));
+  PetscCallMPI(MPI_Type_free(&column));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What this rank has of a vector, values from..to-1, to all ranks */
+static PetscErrorCode AbutComplianceGather_Private(AbutCompliance S, PetscReal y[])
+{
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, y, S->counts, S->first, MPIU_REAL, S->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* y = S x */
+PetscErrorCode AbutComplianceMult_Private(AbutCompliance S, const PetscReal x[], PetscReal y[])
+{
+  const PetscReal one = 1., zero = 0.;
+  PetscBLASInt    rows, columns, ld, step = 1;
+
+  PetscFunctionBegin;
+  PetscCall(PetscBLASIntCast(S->n, &rows));
+  PetscCall(PetscBLASIntCast(S->shared ? S->to - S->from : S->n, &columns));
+  ld = PetscMax(1, rows);
+  PetscCallBLAS("BLASgemv", BLASgemv_("T", &rows, &columns, &one, S->a, &ld, x, &step, &zero, y + (S->shared ? S->from : 0), &step));
+  if (S->shared) PetscCall(AbutComplianceGather_Private(S, y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* S += sum of V_k W_k', which is to be symmetric; count columns each, side by side */
+PetscErrorCode AbutComplianceAdd_Private(AbutCompliance S, PetscInt count, const PetscReal V[], const PetscReal W[])
+{
+  const PetscReal one = 1.;
+  PetscBLASInt    rows, columns, k, ld;
+
+  PetscFunctionBegin;
+  PetscCall(PetscBLASIntCast(S->n, &rows));
+  PetscCall(PetscBLASIntCast(S->shared ? S->to - S->from : S->n, &columns));
+  PetscCall(PetscBLASIntCast(count, &k));
+  ld = PetscMax(1, rows);
+  PetscCallBLAS("BLASgemm", BLASgemm_("N", "T", &rows, &columns, &k, &one, V, &ld, W + (S->shared ? S->from : 0), &ld, &one, S->a, &ld));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode AbutComplianceGetDiagonal_Private(AbutCompliance S, PetscReal diagonal[])
+{
+  const PetscInt from = S->shared ? S->from : 0, to = S->shared ? S->to : S->n;
+
+  PetscFunctionBegin;
+  for (PetscInt i = from; i < to; ++i) diagonal[i] = S->a[(size_t)S->n * (i - from) + i];
+  if (S->shared) PetscCall(AbutComplianceGather_Private(S, diagonal));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
