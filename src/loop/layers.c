@@ -33,21 +33,20 @@ static PetscErrorCode AbutLayerAdd_Private(AbutContactModel model, const AbutMod
   const PetscInt modes = PetscMin(a->n, b->n);
   PetscInt       own, from, to;
   PetscReal     *S = AbutComplianceGetColumns_Private(model->S, &own, &to), one = 1., *scaled;
-  PetscBLASInt   na, nb, nk, ld, ldb;
+  PetscBLASInt   na, nb, nk, ld;
 
   PetscFunctionBegin;
   from = PetscMax(own, b->first);
   to   = PetscMin(to, b->first + b->rows);
   if (!modes || !a->rows || from >= to) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(a->rows * modes, &scaled));
-  for (PetscInt k = 0; k < modes; ++k)
-    for (PetscInt i = 0; i < a->rows; ++i) scaled[k * a->rows + i] = a->W[k * a->rows + i] * w[k];
   PetscCall(PetscBLASIntCast(a->rows, &na));
   PetscCall(PetscBLASIntCast(to - from, &nb));
-  PetscCall(PetscBLASIntCast(b->rows, &ldb));
   PetscCall(PetscBLASIntCast(modes, &nk));
   PetscCall(PetscBLASIntCast(model->n, &ld));
-  PetscCallBLAS("BLASgemm", BLASgemm_("N", "T", &na, &nb, &nk, &one, scaled, &na, b->W + from - b->first, &ldb, &one,
+  PetscCall(PetscMalloc1(nb * modes, &scaled));
+  for (PetscInt k = 0; k < modes; ++k)
+    for (PetscInt j = 0; j < nb; ++j) scaled[k * nb + j] = w[k] * b->W[k * b->rows + from - b->first + j];
+  PetscCallBLAS("BLASgemm", BLASgemm_("N", "T", &na, &nb, &nk, &one, a->W, &na, scaled, &nb, &one,
                                       S + (size_t)model->n * (from - own) + a->first, &ld));
   PetscCall(PetscFree(scaled));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -140,22 +139,19 @@ static PetscErrorCode AbutLayersAdd_Private(AbutInterface f, AbutContactModel mo
 /* Fills S, zero before, with the layers' compliance */
 PetscErrorCode AbutInterfaceLayers_Private(AbutInterface f, AbutContactModel model)
 {
-  AbutModes  *own, *block;
-  PetscInt    most;
-  PetscMPIInt rank, size;
+  AbutModes  *m;
+  PetscMPIInt size;
 
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_rank(PetscObjectComm((PetscObject)f), &rank));
   PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)f), &size));
-  PetscCall(PetscCalloc2(2 * f->npairs, &own, 2 * f->npairs, &block));
-  PetscCall(AbutModesCreate_Private(f, model, own, &most));
-  for (PetscMPIInt owner = 0; owner < size; ++owner) {
-    PetscCall(AbutModesShare_Private(f, model, owner, most, own, block));
-    PetscCall(AbutLayersAdd_Private(f, model, block));
-    if (owner != rank) PetscCall(AbutModesDestroy_Private(f, block));
+  PetscCall(PetscCalloc1(2 * f->npairs, &m));
+  PetscCall(AbutModesCreate_Private(f, model, m));
+  for (PetscMPIInt step = 0; step < size; ++step) {
+    PetscCall(AbutLayersAdd_Private(f, model, m));
+    if (step + 1 < size) PetscCall(AbutModesPass_Private(f, model, step, m));
   }
-  PetscCall(AbutModesDestroy_Private(f, own));
-  PetscCall(PetscFree2(own, block));
+  PetscCall(AbutModesDestroy_Private(f, m));
+  PetscCall(PetscFree(m));
   PetscCall(AbutComplianceAssemble_Private(model->S));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

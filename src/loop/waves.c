@@ -1,7 +1,7 @@
 #include <abut/private/loopimpl.h>
 #include <petscblaslapack.h>
 
-/* The modes of contact sides, by which layers.c knows bodies: each rank finds a block of them, and sends it to the others in its turn */
+/* The modes of contact sides, by which layers.c knows bodies: each rank finds a block of them, and the blocks go round */
 
 /* Eigenvectors from..to-1 by columns V of a symmetric tridiagonal matrix, diagonal d and beside it e. LAPACK's fast way (n operations a
    number) now and then gives up on strongly graded sides; then its slow one is taken, which finds them all by n^3. */
@@ -114,7 +114,8 @@ static PetscErrorCode AbutModesSize_Private(AbutInterface f, AbutContactModel mo
   m->rows   = model->normals[t / 2];
   m->length = 0.;
   for (PetscInt i = 0; i + 1 < side->n; ++i) m->length += AbutSideElement_Private(side, i);
-  PetscCall(PetscMalloc2(m->n, &m->xi, (size_t)m->rows * m->n, &m->W));
+  PetscCall(PetscMalloc1((size_t)(m->rows + 1) * m->n, &m->xi));
+  m->W = m->xi + m->n;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -142,13 +143,10 @@ static PetscErrorCode AbutModesFill_Private(AbutInterface f, AbutContactModel mo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* This rank's blocks of the modes of all sides that are no rigid obstacles, m [2*npairs]; and the largest number of modes of a side */
-PetscErrorCode AbutModesCreate_Private(AbutInterface f, AbutContactModel model, AbutModes m[], PetscInt *most)
+/* The largest number of modes of a side */
+static PetscErrorCode AbutModesCount_Private(AbutInterface f, PetscInt *most)
 {
-  PetscMPIInt rank;
-
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_rank(PetscObjectComm((PetscObject)f), &rank));
   *most = 0;
   for (PetscInt t = 0; t < 2 * f->npairs; ++t) {
     const AbutSide *side;
@@ -158,35 +156,49 @@ PetscErrorCode AbutModesCreate_Private(AbutInterface f, AbutContactModel model, 
     PetscCall(AbutModesGetSide_Private(f, t, &side, &all));
     *most = PetscMax(*most, all);
   }
-  for (PetscInt t = 0; t < 2 * f->npairs; ++t) {
-    PetscInt from;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
+/* This rank's blocks of the modes of all sides that are no rigid obstacles, m [2*npairs] */
+PetscErrorCode AbutModesCreate_Private(AbutInterface f, AbutContactModel model, AbutModes m[])
+{
+  PetscMPIInt rank;
+  PetscInt    most, from;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(PetscObjectComm((PetscObject)f), &rank));
+  PetscCall(AbutModesCount_Private(f, &most));
+  for (PetscInt t = 0; t < 2 * f->npairs; ++t) {
     if (f->bodyof[t] < 0) continue;
-    PetscCall(AbutModesSize_Private(f, model, t, *most, rank, &from, &m[t]));
+    PetscCall(AbutModesSize_Private(f, model, t, most, rank, &from, &m[t]));
     PetscCall(AbutModesFill_Private(f, model, t, from, &m[t]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The blocks of a rank to all of them: m, of which there may be a copy in block */
-PetscErrorCode AbutModesShare_Private(AbutInterface f, AbutContactModel model, PetscMPIInt owner, PetscInt most, const AbutModes m[],
-                                      AbutModes block[])
+/* The blocks here, which a rank before this one made some steps ago, go to the next rank, and those of the rank before take their place */
+PetscErrorCode AbutModesPass_Private(AbutInterface f, AbutContactModel model, PetscMPIInt step, AbutModes m[])
 {
   MPI_Comm    comm = PetscObjectComm((PetscObject)f);
-  PetscMPIInt rank, size;
+  PetscMPIInt rank, size, next, before, tag;
+  PetscInt    most, from;
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCall(PetscObjectGetNewTag((PetscObject)f, &tag));
+  PetscCall(AbutModesCount_Private(f, &most));
+  next   = (rank + 1) % size;
+  before = (rank + size - 1) % size;
   for (PetscInt t = 0; t < 2 * f->npairs; ++t) {
-    PetscInt from;
+    AbutModes there;
 
     if (f->bodyof[t] < 0) continue;
-    if (rank == owner) block[t] = m[t];
-    else PetscCall(AbutModesSize_Private(f, model, t, most, owner, &from, &block[t]));
-    if (size == 1) continue;
-    PetscCallMPI(MPI_Bcast(block[t].xi, (PetscMPIInt)block[t].n, MPIU_REAL, owner, comm));
-    PetscCallMPI(MPI_Bcast(block[t].W, (PetscMPIInt)(block[t].rows * block[t].n), MPIU_REAL, owner, comm));
+    PetscCall(AbutModesSize_Private(f, model, t, most, (before + size - step) % size, &from, &there));
+    PetscCallMPI(MPI_Sendrecv(m[t].xi, (PetscMPIInt)((m[t].rows + 1) * m[t].n), MPIU_REAL, next, tag, there.xi,
+                              (PetscMPIInt)((there.rows + 1) * there.n), MPIU_REAL, before, tag, comm, MPI_STATUS_IGNORE));
+    PetscCall(PetscFree(m[t].xi));
+    m[t] = there;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -194,6 +206,6 @@ PetscErrorCode AbutModesShare_Private(AbutInterface f, AbutContactModel model, P
 PetscErrorCode AbutModesDestroy_Private(AbutInterface f, AbutModes m[])
 {
   PetscFunctionBegin;
-  for (PetscInt t = 0; t < 2 * f->npairs; ++t) PetscCall(PetscFree2(m[t].xi, m[t].W));
+  for (PetscInt t = 0; t < 2 * f->npairs; ++t) PetscCall(PetscFree(m[t].xi));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -68,7 +68,7 @@ typedef struct {
   PetscInt   n;     /* of the block; blocks of a rank begin at the same mode on all sides */
   PetscInt   first; /* first contact node of the pair, and how many */
   PetscInt   rows;
-  PetscReal *xi; /* [n] ascending */
+  PetscReal *xi; /* [n] ascending; behind them */
   PetscReal *W;  /* [rows*n] by columns: penetrations of the pair's contact nodes when the side takes the shape of a mode */
   PetscReal  length;
 } AbutModes;
@@ -158,8 +158,8 @@ PETSC_EXTERN PetscErrorCode AbutComplianceSolve_Private(AbutCompliance, PetscInt
 PETSC_INTERN PetscErrorCode AbutComplianceFreeFactor_Private(AbutCompliance);
 
 /* waves.c */
-PETSC_INTERN PetscErrorCode AbutModesCreate_Private(AbutInterface, AbutContactModel, AbutModes[], PetscInt *);
-PETSC_INTERN PetscErrorCode AbutModesShare_Private(AbutInterface, AbutContactModel, PetscMPIInt, PetscInt, const AbutModes[], AbutModes[]);
+PETSC_INTERN PetscErrorCode AbutModesCreate_Private(AbutInterface, AbutContactModel, AbutModes[]);
+PETSC_INTERN PetscErrorCode AbutModesPass_Private(AbutInterface, AbutContactModel, PetscMPIInt, AbutModes[]);
 PETSC_INTERN PetscErrorCode AbutModesDestroy_Private(AbutInterface, AbutModes[]);
 
 /* layers.c, model.c, programme.c: the contact model */
