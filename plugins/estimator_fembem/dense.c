@@ -20,6 +20,19 @@ PetscErrorCode FembemDenseSum(MPI_Comm comm, size_t n, PetscReal A[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The same, and the sums are on one rank alone: what the others have stays */
+PetscErrorCode FembemDenseSumTo(MPI_Comm comm, size_t n, PetscMPIInt to, PetscReal A[])
+{
+  PetscMPIInt rank;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  for (size_t i = 0; i < n; i += FEMBEM_CHUNK)
+    PetscCallMPI(MPI_Reduce(rank == to ? MPI_IN_PLACE : A + i, A + i, (PetscMPIInt)PetscMin(n - i, FEMBEM_CHUNK), MPIU_REAL, MPIU_SUM, to,
+                            comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Columns first[r] to first[r+1]-1 of a matrix with ld rows come from rank r */
 static PetscErrorCode ShareColumns(MPI_Comm comm, PetscInt ld, const PetscInt first[], PetscReal A[])
 {

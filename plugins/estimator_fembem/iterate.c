@@ -5,7 +5,7 @@
 /*
    Systems too large to be dense. Pairs of elements near each other are entries of a sparse matrix, what is far goes by moments of clusters:
    both grow in proportion to the boundary. GMRES (Y. Saad and M. H. Schultz, SIAM J. Sci. Stat. Comput. 7, 1986) solves.
-   Every rank evaluates its part of the near pairs and of the clusters; vectors are small, so that all ranks hold them and iterate alike.
+   Every rank evaluates its part of the near pairs and of the clusters, for which it sees all unknowns; of GMRES's vectors it has a part.
 */
 #define FEMBEM_RESTART    100
 #define FEMBEM_ITERATIONS 1000
@@ -14,9 +14,12 @@ typedef struct {
   FembemSystem  *s;
   FembemFar      far;
   FembemTwoLevel two;
-  Mat            near;      /* of this rank's pairs */
-  PetscReal     *t, *u;     /* [rows*n], [2*nnodes] zero where given */
-  PetscReal     *onT, *onU; /* what the far operator adds */
+  Mat            near;           /* of this rank's pairs */
+  Vec            all, part;      /* all unknowns, and what this rank's pairs and clusters make of them */
+  PetscReal     *t, *u;          /* [rows*n], [2*nnodes] zero where given */
+  PetscReal     *onT, *onU;      /* what the far operator adds */
+  PetscReal     *buffer;         /* [nt+nu] in the order of GMRES's vectors */
+  PetscMPIInt   *count, *before; /* [ranks] unknowns of each, and of those before it */
 } Operator;
 
 /* Of elements, in a pair of leaves */
@@ -103,19 +106,39 @@ static PetscErrorCode AddFar(Operator *op, PetscReal factor, PetscReal y[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The same numbers, to the last bit, on all ranks: they decide alike */
-static PetscErrorCode SumAlike(const Operator *op, PetscReal y[])
+/* All unknowns from the ranks' parts */
+static PetscErrorCode GatherUnknowns(const Operator *op, Vec x, PetscReal all[])
 {
-  const PetscInt n = op->s->nt + op->s->nu;
-  PetscMPIInt    size;
+  const PetscInt     n = op->s->nt + op->s->nu, *unknown;
+  const PetscScalar *own;
+  PetscMPIInt        rank;
 
   PetscFunctionBegin;
-  PetscCall(FembemDenseSum(op->s->b->comm, n, y));
-  PetscCallMPI(MPI_Comm_size(op->s->b->comm, &size));
-  if (size > 1) PetscCallMPI(MPI_Bcast(y, n, MPIU_REAL, 0, op->s->b->comm));
+  PetscCallMPI(MPI_Comm_rank(op->s->b->comm, &rank));
+  PetscCall(VecGetArrayRead(x, &own));
+  PetscCallMPI(MPI_Allgatherv(own, op->count[rank], MPIU_REAL, op->buffer, op->count, op->before, MPIU_REAL, op->s->b->comm));
+  PetscCall(VecRestoreArrayRead(x, &own));
+  FembemTwoLevelGetLayout(op->two, &unknown, NULL);
+  for (PetscInt k = 0; k < n; ++k) all[unknown[k]] = op->buffer[k];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Sums over the ranks, of which each gets its own unknowns */
+static PetscErrorCode SumUnknowns(const Operator *op, const PetscReal part[], Vec y)
+{
+  const PetscInt n = op->s->nt + op->s->nu, *unknown;
+  PetscScalar   *own;
+
+  PetscFunctionBegin;
+  FembemTwoLevelGetLayout(op->two, &unknown, NULL);
+  for (PetscInt k = 0; k < n; ++k) op->buffer[k] = part[unknown[k]];
+  PetscCall(VecGetArrayWrite(y, &own));
+  PetscCallMPI(MPI_Reduce_scatter(op->buffer, own, op->count, MPIU_REAL, MPIU_SUM, op->s->b->comm));
+  PetscCall(VecRestoreArrayWrite(y, &own));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* This rank's part; near pairs have added theirs */
 static PetscErrorCode SetRightHandSide(Operator *op)
 {
   FembemSystem *s = op->s;
@@ -127,7 +150,6 @@ static PetscErrorCode SetRightHandSide(Operator *op)
   for (PetscInt k = 0; k < s->rows * s->b->n; ++k) op->t[k] = s->tindex[k] < 0 ? s->t[k] : 0.;
   for (PetscInt k = 0; k < 2 * s->b->nnodes; ++k) op->u[k] = s->uindex[k] < 0 ? s->u[k] : 0.;
   PetscCall(AddFar(op, -1., s->rhs));
-  PetscCall(SumAlike(op, s->rhs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -151,21 +173,26 @@ static PetscErrorCode Multiply(Mat A, Vec x, Vec y)
   Operator           *op;
   const FembemSystem *s;
   const PetscScalar  *in;
-  PetscScalar        *out;
+  PetscScalar        *all, *out;
+  PetscMPIInt         rank;
 
   PetscFunctionBegin;
   PetscCall(MatShellGetContext(A, &op));
   s = op->s;
-  PetscCall(MatMult(op->near, x, y));
-  PetscCall(VecGetArrayRead(x, &in));
-  PetscCall(VecGetArray(y, &out));
+  PetscCallMPI(MPI_Comm_rank(s->b->comm, &rank));
+  PetscCall(VecGetArrayWrite(op->all, &all));
+  PetscCall(GatherUnknowns(op, x, all));
+  PetscCall(VecRestoreArrayWrite(op->all, &all));
+  PetscCall(MatMult(op->near, op->all, op->part));
+  PetscCall(VecGetArrayRead(op->all, &in));
   for (PetscInt k = 0; k < s->rows * s->b->n; ++k) op->t[k] = s->tindex[k] < 0 ? 0. : in[s->tindex[k]];
   for (PetscInt k = 0; k < 2 * s->b->nnodes; ++k) op->u[k] = s->uindex[k] < 0 ? 0. : in[s->nt + s->uindex[k]];
+  PetscCall(VecGetArray(op->part, &out));
   PetscCall(AddFar(op, 1., out));
-  PetscCall(SumAlike(op, out));
-  HoldMotions(s, in + s->nt, out + s->nt);
-  PetscCall(VecRestoreArray(y, &out));
-  PetscCall(VecRestoreArrayRead(x, &in));
+  if (!rank) HoldMotions(s, in + s->nt, out + s->nt);
+  PetscCall(SumUnknowns(op, out, y));
+  PetscCall(VecRestoreArray(op->part, &out));
+  PetscCall(VecRestoreArrayRead(op->all, &in));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -185,23 +212,20 @@ static PetscErrorCode Precondition(PC pc, Vec r, Vec z)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Leaves the solution in s->rhs */
-static PetscErrorCode Iterate(Operator *op, PetscReal tolerance, PetscInt *its, PetscBool *failed)
+static PetscErrorCode CreateSolver(Operator *op, PetscReal tolerance, KSP *newksp)
 {
-  const PetscInt     n = op->s->nt + op->s->nu;
-  Mat                A;
-  KSP                ksp;
-  PC                 pc;
-  Vec                b, x;
-  const PetscScalar *solution;
-  KSPConvergedReason reason;
+  const PetscInt n    = op->s->nt + op->s->nu;
+  MPI_Comm       comm = op->s->b->comm;
+  PetscMPIInt    rank;
+  Mat            A;
+  KSP            ksp;
+  PC             pc;
 
   PetscFunctionBegin;
-  PetscCall(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, op, &A));
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCall(MatCreateShell(comm, op->count[rank], op->count[rank], n, n, op, &A));
   PetscCall(MatShellSetOperation(A, MATOP_MULT, (void (*)(void))Multiply));
-  PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, op->s->rhs, &b));
-  PetscCall(VecDuplicate(b, &x));
-  PetscCall(KSPCreate(PETSC_COMM_SELF, &ksp));
+  PetscCall(KSPCreate(comm, &ksp));
   PetscCall(KSPSetType(ksp, KSPGMRES));
   PetscCall(KSPGMRESSetRestart(ksp, FEMBEM_RESTART));
   PetscCall(KSPSetTolerances(ksp, tolerance, PETSC_DEFAULT, PETSC_DEFAULT, FEMBEM_ITERATIONS));
@@ -210,43 +234,85 @@ static PetscErrorCode Iterate(Operator *op, PetscReal tolerance, PetscInt *its, 
   PetscCall(PCSetType(pc, PCSHELL));
   PetscCall(PCShellSetContext(pc, op));
   PetscCall(PCShellSetApply(pc, Precondition));
+  PetscCall(MatDestroy(&A));
+  *newksp = ksp;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Leaves the solution in s->rhs, on all ranks */
+static PetscErrorCode Iterate(Operator *op, PetscReal tolerance, PetscInt *its, PetscBool *failed)
+{
+  Mat                A;
+  KSP                ksp;
+  Vec                b, x;
+  KSPConvergedReason reason;
+
+  PetscFunctionBegin;
+  PetscCall(CreateSolver(op, tolerance, &ksp));
+  PetscCall(KSPGetOperators(ksp, &A, NULL));
+  PetscCall(MatCreateVecs(A, &x, &b));
+  PetscCall(SumUnknowns(op, op->s->rhs, b));
   PetscCall(KSPSolve(ksp, b, x));
   PetscCall(KSPGetConvergedReason(ksp, &reason));
   PetscCall(KSPGetIterationNumber(ksp, its));
   *failed = (PetscBool)(reason < 0);
-  PetscCall(VecGetArrayRead(x, &solution));
-  PetscCall(PetscArraycpy(op->s->rhs, solution, n));
-  PetscCall(VecRestoreArrayRead(x, &solution));
+  PetscCall(GatherUnknowns(op, x, op->s->rhs));
   PetscCall(VecDestroy(&x));
   PetscCall(VecDestroy(&b));
   PetscCall(KSPDestroy(&ksp));
-  PetscCall(MatDestroy(&A));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateOperator(FembemSystem *s, PetscReal tolerance, Operator *op)
+{
+  const PetscInt        nt = s->rows * s->b->n, nu = 2 * s->b->nnodes, *first;
+  const FembemClusters *tree;
+  const PetscInt       *near[2];
+  PetscInt              nnear;
+  PetscMPIInt           size;
+
+  PetscFunctionBegin;
+  op->s = s;
+  PetscCallMPI(MPI_Comm_size(s->b->comm, &size));
+  PetscCall(FembemFarCreate(s, tolerance, &op->far));
+  FembemFarGetClusters(op->far, &tree, &nnear, near);
+  PetscCall(PetscMalloc7(nt, &op->t, nu, &op->u, nt, &op->onT, nu, &op->onU, s->nt + s->nu, &op->buffer, size, &op->count, size,
+                         &op->before));
+  PetscCall(AssembleNear(op));
+  PetscCall(MatCreateVecs(op->near, &op->all, &op->part));
+  PetscCall(SetRightHandSide(op));
+  PetscCall(FembemTwoLevelCreate(s, tree, op->near, &op->two));
+  FembemTwoLevelGetLayout(op->two, NULL, &first);
+  for (PetscMPIInt r = 0; r < size; ++r) {
+    op->before[r] = (PetscMPIInt)first[r];
+    op->count[r]  = (PetscMPIInt)(first[r + 1] - first[r]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode DestroyOperator(Operator *op)
+{
+  PetscFunctionBegin;
+  PetscCall(FembemTwoLevelDestroy(&op->two));
+  PetscCall(VecDestroy(&op->all));
+  PetscCall(VecDestroy(&op->part));
+  PetscCall(MatDestroy(&op->near));
+  PetscCall(PetscFree7(op->t, op->u, op->onT, op->onU, op->buffer, op->count, op->before));
+  PetscCall(FembemFarDestroy(&op->far));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Leaves the unknown tractions in f and the unknown displacements in g */
 PetscErrorCode FembemSystemIterate(FembemSystem *s, PetscReal tolerance, FembemCost *cost)
 {
-  const PetscInt        nt = s->rows * s->b->n, nu = 2 * s->b->nnodes;
-  const FembemClusters *tree;
-  const PetscInt       *near[2];
-  PetscInt              nnear;
-  Operator              op = {.s = s};
-  MatInfo               info;
+  Operator op;
+  MatInfo  info;
 
   PetscFunctionBegin;
-  PetscCall(FembemFarCreate(s, tolerance, &op.far));
-  FembemFarGetClusters(op.far, &tree, &nnear, near);
-  PetscCall(PetscMalloc4(nt, &op.t, nu, &op.u, nt, &op.onT, nu, &op.onU));
-  PetscCall(AssembleNear(&op));
-  PetscCall(SetRightHandSide(&op));
-  PetscCall(FembemTwoLevelCreate(s, tree, op.near, &op.two));
+  PetscCall(CreateOperator(s, tolerance, &op));
   PetscCall(Iterate(&op, tolerance, &cost->iterations, &cost->failed));
   PetscCall(MatGetInfo(op.near, MAT_LOCAL, &info));
   cost->numbers = (size_t)info.nz_used + FembemFarNumbers(op.far) + FembemTwoLevelNumbers(op.two);
-  PetscCall(FembemTwoLevelDestroy(&op.two));
-  PetscCall(MatDestroy(&op.near));
-  PetscCall(PetscFree4(op.t, op.u, op.onT, op.onU));
-  PetscCall(FembemFarDestroy(&op.far));
+  PetscCall(DestroyOperator(&op));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

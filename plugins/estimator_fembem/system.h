@@ -54,6 +54,7 @@ PETSC_INTERN PetscErrorCode FembemSystemDestroy(FembemSystem *);
 
 /* Dense matrices that all ranks hold, by columns, and work on together; of one rank LAPACK's routines */
 PETSC_INTERN PetscErrorCode FembemDenseSum(MPI_Comm, size_t, PetscReal[]);
+PETSC_INTERN PetscErrorCode FembemDenseSumTo(MPI_Comm, size_t, PetscMPIInt, PetscReal[]);
 PETSC_INTERN PetscErrorCode FembemDenseFactor(MPI_Comm, PetscInt, PetscReal[], PetscBool *);
 PETSC_INTERN PetscErrorCode FembemDenseForward(MPI_Comm, PetscInt, PetscInt, const PetscReal[], PetscReal[]);
 PETSC_INTERN PetscErrorCode FembemDenseSchur(MPI_Comm, PetscInt, PetscInt, const PetscReal[], PetscReal[]);

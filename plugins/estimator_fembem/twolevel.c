@@ -6,14 +6,18 @@
    inverse knows what changes from element to element, and the dense system of merged elements, which knows the rest.
 */
 struct _n_FembemTwoLevel {
+  MPI_Comm      comm;
+  PetscMPIInt   rank;
   FembemCoarse  coarse;
-  PetscInt      n, nblocks;
+  PetscInt      nblocks;
   PetscInt     *first;   /* [nblocks+1] of the places below */
-  PetscInt     *unknown; /* [n] those of each block */
+  PetscInt     *unknown; /* [nt+nu] those of each block */
   size_t       *offset;  /* [nblocks+1] of its matrix */
-  PetscReal    *block;   /* factored, by columns */
-  PetscBLASInt *pivot;   /* [n] */
-  PetscReal    *work;    /* [n], and [unknowns of the coarse system] */
+  PetscInt     *begin;   /* [ranks+1] blocks of each rank, */
+  PetscInt     *place;   /* [ranks+1] and its places */
+  PetscReal    *block;   /* of this rank, factored, by columns */
+  PetscBLASInt *pivot;   /* [places of this rank] */
+  PetscReal    *work;    /* [unknowns of the coarse system] */
 };
 
 /* A leaf has the tractions of its elements and the displacements of their nodes but the last one */
@@ -39,15 +43,67 @@ static void FindBlocks(const FembemSystem *s, const FembemClusters *tree, Fembem
   }
 }
 
-static PetscErrorCode FactorBlocks(const FembemSystem *s, FembemTwoLevel two)
+/* About equally many places, in whole blocks */
+static void DealOut(FembemTwoLevel two, PetscMPIInt size)
 {
+  const PetscInt n = two->first[two->nblocks];
+  PetscInt       i = 0;
+
+  for (PetscMPIInt r = 0; r < size; ++r) {
+    two->begin[r] = i;
+    while (i < two->nblocks && (PetscInt64)(two->first[i] + two->first[i + 1]) * size < (PetscInt64)2 * n * (r + 1)) ++i;
+  }
+  two->begin[size] = two->nblocks;
+  for (PetscMPIInt r = 0; r <= size; ++r) two->place[r] = two->first[two->begin[r]];
+}
+
+/* Sums what the ranks know of the blocks of one of them; by rows, but symmetric */
+static PetscErrorCode SumBlocks(FembemTwoLevel two, Mat near, PetscMPIInt r, PetscReal block[])
+{
+  const size_t offset = two->offset[two->begin[r]];
+
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < two->nblocks; ++i) {
+  for (PetscInt i = two->begin[r]; i < two->begin[r + 1]; ++i) {
+    const PetscInt m = two->first[i + 1] - two->first[i], *unknown = two->unknown + two->first[i];
+
+    PetscCall(MatGetValues(near, m, unknown, m, unknown, block + two->offset[i] - offset));
+  }
+  PetscCall(FembemDenseSumTo(two->comm, two->offset[two->begin[r + 1]] - offset, r, block));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SetBlocks(FembemTwoLevel two, Mat near)
+{
+  PetscMPIInt size;
+  size_t      most = 0;
+  PetscReal  *others;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_size(two->comm, &size));
+  for (PetscMPIInt r = 0; r < size; ++r)
+    if (r != two->rank) most = PetscMax(most, two->offset[two->begin[r + 1]] - two->offset[two->begin[r]]);
+  PetscCall(PetscMalloc1(two->offset[two->begin[two->rank + 1]] - two->offset[two->begin[two->rank]], &two->block));
+  PetscCall(PetscMalloc1(most, &others));
+  for (PetscMPIInt r = 0; r < size; ++r) PetscCall(SumBlocks(two, near, r, r == two->rank ? two->block : others));
+  PetscCall(PetscFree(others));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FactorBlocks(FembemTwoLevel two)
+{
+  const PetscInt begin = two->begin[two->rank];
+  PetscMPIInt    worst = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt i = begin; i < two->begin[two->rank + 1]; ++i) {
     PetscBLASInt m = two->first[i + 1] - two->first[i], lda = PetscMax(m, 1), info;
 
-    PetscCallBLAS("LAPACKgetrf", LAPACKgetrf_(&m, &m, two->block + two->offset[i], &lda, two->pivot + two->first[i], &info));
-    PetscCheck(!info, s->b->comm, PETSC_ERR_LIB, "A block of neighbouring boundary elements is singular: getrf gives %d", (int)info);
+    PetscCallBLAS("LAPACKgetrf", LAPACKgetrf_(&m, &m, two->block + two->offset[i] - two->offset[begin], &lda,
+                                              two->pivot + two->first[i] - two->first[begin], &info));
+    worst = PetscMax(worst, PetscAbsInt(info));
   }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_INT, MPI_MAX, two->comm));
+  PetscCheck(!worst, two->comm, PETSC_ERR_LIB, "A block of neighbouring boundary elements is singular: getrf gives %d", worst);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -55,59 +111,67 @@ static PetscErrorCode FactorBlocks(const FembemSystem *s, FembemTwoLevel two)
 PetscErrorCode FembemTwoLevelCreate(const FembemSystem *s, const FembemClusters *tree, Mat near, FembemTwoLevel *newtwo)
 {
   FembemTwoLevel two;
+  PetscMPIInt    size;
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&two));
-  two->n = s->nt + s->nu;
+  two->comm = s->b->comm;
+  PetscCallMPI(MPI_Comm_size(two->comm, &size));
+  PetscCallMPI(MPI_Comm_rank(two->comm, &two->rank));
   PetscCall(FembemCoarseCreate(s, &two->coarse));
-  PetscCall(PetscCalloc5(tree->n + 1, &two->first, two->n, &two->unknown, tree->n + 1, &two->offset, two->n, &two->pivot,
-                         two->n + two->coarse.s.nt + two->coarse.s.nu, &two->work));
+  PetscCall(PetscCalloc6(tree->n + 1, &two->first, s->nt + s->nu, &two->unknown, tree->n + 1, &two->offset, size + 1, &two->begin, size + 1,
+                         &two->place, two->coarse.s.nt + two->coarse.s.nu, &two->work));
   FindBlocks(s, tree, two);
-  PetscCall(PetscCalloc1(two->offset[two->nblocks], &two->block));
-  for (PetscInt i = 0; i < two->nblocks; ++i) { /* by rows, but symmetric */
-    const PetscInt m = two->first[i + 1] - two->first[i], *unknown = two->unknown + two->first[i];
-
-    PetscCall(MatGetValues(near, m, unknown, m, unknown, two->block + two->offset[i]));
-  }
-  PetscCall(FembemDenseSum(s->b->comm, two->offset[two->nblocks], two->block));
-  PetscCall(FactorBlocks(s, two));
+  DealOut(two, size);
+  PetscCall(PetscMalloc1(two->place[two->rank + 1] - two->place[two->rank], &two->pivot));
+  PetscCall(SetBlocks(two, near));
+  PetscCall(FactorBlocks(two));
   *newtwo = two;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* How vectors are laid out: the unknown at each place, and the first place of each rank */
+void FembemTwoLevelGetLayout(FembemTwoLevel two, const PetscInt *unknown[], const PetscInt *first[])
+{
+  if (unknown) *unknown = two->unknown;
+  if (first) *first = two->place;
+}
+
+/* Collective; r and z are this rank's places */
 PetscErrorCode FembemTwoLevelApply(FembemTwoLevel two, const PetscReal r[], PetscReal z[])
 {
-  const FembemCoarse *c    = &two->coarse;
-  PetscReal          *work = two->work, *coarse = two->work + two->n;
-  PetscBLASInt        one = 1, info;
+  const FembemCoarse *c     = &two->coarse;
+  const PetscInt      begin = two->begin[two->rank], place = two->place[two->rank], n = two->place[two->rank + 1] - place;
+  const PetscInt     *unknown = two->unknown + place;
+  PetscBLASInt        one     = 1, info;
 
   PetscFunctionBegin;
-  PetscCall(PetscArrayzero(coarse, c->s.nt + c->s.nu));
+  PetscCall(PetscArrayzero(two->work, c->s.nt + c->s.nu));
   for (PetscInt end = 0; end < 2; ++end)
-    for (PetscInt k = 0; k < two->n; ++k)
-      if (c->from[end][k] >= 0) coarse[c->from[end][k]] += c->weight[end][k] * r[k];
-  PetscCall(FembemSystemSolve(&c->s, coarse, coarse + c->s.nt));
-  for (PetscInt i = 0; i < two->nblocks; ++i) {
-    const PetscInt first = two->first[i];
-    PetscBLASInt   m = two->first[i + 1] - first, lda = PetscMax(m, 1);
+    for (PetscInt k = 0; k < n; ++k)
+      if (c->from[end][unknown[k]] >= 0) two->work[c->from[end][unknown[k]]] += c->weight[end][unknown[k]] * r[k];
+  PetscCall(FembemDenseSum(two->comm, c->s.nt + c->s.nu, two->work));
+  PetscCall(FembemSystemSolve(&c->s, two->work, two->work + c->s.nt));
+  PetscCall(PetscArraycpy(z, r, n));
+  for (PetscInt i = begin; i < two->begin[two->rank + 1]; ++i) {
+    const PetscInt first = two->first[i] - place;
+    PetscBLASInt   m = two->first[i + 1] - two->first[i], lda = PetscMax(m, 1);
 
-    for (PetscInt k = first; k < first + m; ++k) work[k] = r[two->unknown[k]];
-    PetscCallBLAS("LAPACKgetrs",
-                  LAPACKgetrs_("N", &m, &one, two->block + two->offset[i], &lda, two->pivot + first, work + first, &lda, &info));
-    for (PetscInt k = first; k < first + m; ++k) z[two->unknown[k]] = work[k];
+    PetscCallBLAS("LAPACKgetrs", LAPACKgetrs_("N", &m, &one, two->block + two->offset[i] - two->offset[begin], &lda, two->pivot + first,
+                                              z + first, &lda, &info));
   }
   for (PetscInt end = 0; end < 2; ++end)
-    for (PetscInt k = 0; k < two->n; ++k)
-      if (c->from[end][k] >= 0) z[k] += c->weight[end][k] * coarse[c->from[end][k]];
+    for (PetscInt k = 0; k < n; ++k)
+      if (c->from[end][unknown[k]] >= 0) z[k] += c->weight[end][unknown[k]] * two->work[c->from[end][unknown[k]]];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Held for blocks and for the coarse system */
+/* Held for this rank's blocks and for the coarse system */
 size_t FembemTwoLevelNumbers(FembemTwoLevel two)
 {
   const size_t nt = two->coarse.s.nt, nu = two->coarse.s.nu;
 
-  return two->offset[two->nblocks] + nt * (nt + nu) + nu * nu;
+  return two->offset[two->begin[two->rank + 1]] - two->offset[two->begin[two->rank]] + nt * (nt + nu) + nu * nu;
 }
 
 PetscErrorCode FembemTwoLevelDestroy(FembemTwoLevel *two)
@@ -115,8 +179,9 @@ PetscErrorCode FembemTwoLevelDestroy(FembemTwoLevel *two)
   PetscFunctionBegin;
   if (!*two) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(FembemCoarseDestroy(&(*two)->coarse));
-  PetscCall(PetscFree5((*two)->first, (*two)->unknown, (*two)->offset, (*two)->pivot, (*two)->work));
+  PetscCall(PetscFree6((*two)->first, (*two)->unknown, (*two)->offset, (*two)->begin, (*two)->place, (*two)->work));
   PetscCall(PetscFree((*two)->block));
+  PetscCall(PetscFree((*two)->pivot));
   PetscCall(PetscFree(*two));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -14,9 +14,11 @@ typedef struct {
 PETSC_INTERN PetscErrorCode FembemCoarseCreate(const FembemSystem *, FembemCoarse *);
 PETSC_INTERN PetscErrorCode FembemCoarseDestroy(FembemCoarse *);
 
-/* Preconditioner: blocks of neighbours and the coarse system, added */
+/* Preconditioner: blocks of neighbours and the coarse system, added. Blocks and vectors are dealt out to the ranks, all of which hold the
+   coarse system */
 typedef struct _n_FembemTwoLevel *FembemTwoLevel;
 PETSC_INTERN PetscErrorCode       FembemTwoLevelCreate(const FembemSystem *, const FembemClusters *, Mat, FembemTwoLevel *);
+PETSC_INTERN void                 FembemTwoLevelGetLayout(FembemTwoLevel, const PetscInt *[], const PetscInt *[]);
 PETSC_INTERN PetscErrorCode       FembemTwoLevelApply(FembemTwoLevel, const PetscReal[], PetscReal[]);
 PETSC_INTERN size_t               FembemTwoLevelNumbers(FembemTwoLevel);
 PETSC_INTERN PetscErrorCode       FembemTwoLevelDestroy(FembemTwoLevel *);
