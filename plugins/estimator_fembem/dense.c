@@ -20,7 +20,7 @@ PetscErrorCode FembemDenseSum(MPI_Comm comm, size_t n, PetscReal A[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The same, and the sums are on one rank alone: what the others have stays */
+/* Only one rank gets the sums, the others keep what they have */
 PetscErrorCode FembemDenseSumTo(MPI_Comm comm, size_t n, PetscMPIInt to, PetscReal A[])
 {
   PetscMPIInt rank;

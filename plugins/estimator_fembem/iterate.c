@@ -228,6 +228,7 @@ static PetscErrorCode CreateSolver(Operator *op, PetscReal tolerance, KSP *newks
   PetscCall(KSPCreate(comm, &ksp));
   PetscCall(KSPSetType(ksp, KSPGMRES));
   PetscCall(KSPGMRESSetRestart(ksp, FEMBEM_RESTART));
+  PetscCall(KSPSetPCSide(ksp, PC_RIGHT)); /* the residual is that of the system, whatever the preconditioner */
   PetscCall(KSPSetTolerances(ksp, tolerance, PETSC_DEFAULT, PETSC_DEFAULT, FEMBEM_ITERATIONS));
   PetscCall(KSPSetOperators(ksp, A, A));
   PetscCall(KSPGetPC(ksp, &pc));

@@ -172,6 +172,57 @@ START_TEST(ranks_share_the_pairs_of_elements)
 }
 END_TEST
 
+/* The residual of the system over its right-hand side, all pairs one by one */
+static PetscReal Residual(const FembemBoundary *b)
+{
+  FembemSystem s;
+  PetscReal    sum[2] = {0., 0.};
+
+  CkOk(FembemSystemCreate(b, FembemSystemScale(b), &s));
+  CkOk(PetscCalloc3(s.nt * s.nt, &s.V, s.nt * s.nu, &s.W, s.nu * s.nu, &s.D));
+  for (PetscInt i = 0; i < b->n; ++i)
+    for (PetscInt j = i; j < b->n; ++j) CkOk(FembemSystemAddPair(&s, i, j));
+  FembemSystemAddMass(&s);
+  for (PetscInt k = 0; k < s.nt + s.nu; ++k) sum[0] += PetscSqr(s.rhs[k]);
+  for (PetscInt j = 0; j < s.rows * b->n; ++j) {
+    const PetscInt c = s.tindex[j];
+
+    for (PetscInt r = 0; c >= 0 && r < s.nt; ++r) s.f[r] -= s.V[r + s.nt * c] * s.t[j];
+    for (PetscInt r = 0; c >= 0 && r < s.nu; ++r) s.g[r] -= s.W[c + s.nt * r] * s.t[j];
+  }
+  for (PetscInt j = 0; j < 2 * b->nnodes; ++j) {
+    const PetscInt c = s.uindex[j];
+
+    for (PetscInt r = 0; c >= 0 && r < s.nt; ++r) s.f[r] -= s.W[r + s.nt * c] * s.u[j];
+    for (PetscInt r = 0; c >= 0 && r < s.nu; ++r) s.g[r] += s.D[r + s.nu * c] * s.u[j];
+  }
+  for (PetscInt k = 0; k < s.nt + s.nu; ++k) sum[1] += PetscSqr(s.rhs[k]);
+  CkOk(FembemSystemDestroy(&s));
+  return PetscSqrtReal(sum[1] / sum[0]);
+}
+
+/* Half as much more for what distant elements do to each other */
+START_TEST(the_tolerance_is_that_of_the_residual)
+{
+  const FembemSolver solver = {.dense = 0, .tolerance = 1e-4};
+  const PetscInt     m[4]   = {30, 12, 22, 15};
+  AbutBoundary       given;
+  FembemBoundary     b;
+  FembemCost         cost;
+  PetscReal          residual;
+
+  CreateBoundary(PETSC_COMM_WORLD, 2, supports[_i], m, &given, &b);
+  CkOk(FembemRecoverTractions(&b));
+  CkOk(FembemSolveGalerkin(&b, solver, &cost));
+  residual = Residual(&b);
+  CkOk(PetscPrintf(PETSC_COMM_WORLD, "%.16s: residual %.2e after %" PetscInt_FMT " iterations to %.0e\n", supports[_i], (double)residual,
+                   cost.iterations, (double)solver.tolerance));
+  ck_assert_double_le(residual, 1.5 * solver.tolerance);
+  CkOk(FembemBoundaryDestroy(&b));
+  CkOk(BoundaryFree(&given));
+}
+END_TEST
+
 /* As on mixed processors: a material that differs in its last digits, with motions that nothing holds. When to stop is decided once */
 START_TEST(ranks_that_compute_unlike_have_one_solution)
 {
@@ -293,6 +344,7 @@ int main(int argc, char **argv)
   tcase_add_loop_test(tests, clusters_do_to_each_other_what_their_elements_do, 1, ABUT_ORDER_MAX + 1);
   tcase_add_loop_test(tests, iterations_and_the_dense_system_agree_under_all_supports, 0, 7);
   tcase_add_loop_test(tests, ranks_share_the_pairs_of_elements, 0, 2);
+  tcase_add_loop_test(tests, the_tolerance_is_that_of_the_residual, 0, 7);
   tcase_add_test(tests, ranks_that_compute_unlike_have_one_solution);
   tcase_add_loop_test(tests, indicators_are_those_of_the_dense_system, 1, 3);
   tcase_add_test(tests, what_iterations_hold_grows_with_the_boundary);
