@@ -42,7 +42,7 @@ PetscErrorCode FembemClustersCreate(PetscInt n, const FembemElement e[], PetscIn
 {
   PetscFunctionBegin;
   clusters->n = 0;
-  PetscCall(PetscMalloc1(2 * (2 * n / leaf + 1), &clusters->cluster));
+  PetscCall(PetscMalloc1(2 * (2 * (size_t)n / leaf + 1), &clusters->cluster));
   Build(e, 0, n, leaf, clusters);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -87,8 +87,8 @@ PetscErrorCode FembemFarCreate(const FembemSystem *s, PetscReal tolerance, Fembe
   f->terms  = PetscMin(FEMBEM_FAR_TERMS, (PetscInt)PetscCeilReal(PetscLogReal(tolerance / 0.1) / PetscLogReal(FEMBEM_FAR_THETA)));
   f->stride = 2 * f->terms * (s->b->order + 1);
   PetscCall(FembemClustersCreate(s->b->n, s->e, FEMBEM_FAR_LEAF, &f->clusters));
-  PetscCall(PetscCalloc6(f->terms * f->terms, &f->binomial, (size_t)f->stride * s->b->n, &f->integral, f->terms * f->clusters.n, &f->moment,
-                         f->terms * f->clusters.n, &f->local, f->clusters.n, &f->mine, f->clusters.n, &f->traction));
+  PetscCall(PetscCalloc6(f->terms * f->terms, &f->binomial, (size_t)f->stride * s->b->n, &f->integral, f->terms * (size_t)f->clusters.n,
+                         &f->moment, f->terms * (size_t)f->clusters.n, &f->local, f->clusters.n, &f->mine, f->clusters.n, &f->traction));
   for (PetscInt k = 0; k < f->terms; ++k)
     for (PetscInt i = 0; i <= k; ++i) f->binomial[f->terms * k + i] = i == 0 ? 1. : f->binomial[f->terms * k + i - 1] * (k - i + 1.) / i;
   PetscCall(SetFlags(f));
@@ -99,7 +99,7 @@ PetscErrorCode FembemFarCreate(const FembemSystem *s, PetscReal tolerance, Fembe
 }
 
 /* The pairs of leaves that are near each other */
-void FembemFarGetClusters(FembemFar f, const FembemClusters **clusters, PetscInt *nnear, const PetscInt *near[2])
+void FembemFarGetClusters(FembemFar f, const FembemClusters **clusters, PetscCount *nnear, const PetscInt *near[2])
 {
   *clusters = &f->clusters;
   *nnear    = f->nnear;
@@ -133,8 +133,8 @@ static void GetShift(FembemFar f, PetscInt child, PetscInt parent, PetscComplex 
 
 static void ShiftUp(FembemFar f, PetscInt child, PetscInt parent, PetscComplex factor[])
 {
-  const FembemMoments *from = f->moment + f->terms * child;
-  FembemMoments       *to   = f->moment + f->terms * parent;
+  const FembemMoments *from = FembemFarMoments(f, f->moment, child);
+  FembemMoments       *to   = FembemFarMoments(f, f->moment, parent);
   PetscComplex         d;
 
   GetShift(f, child, parent, &d, factor);
@@ -150,8 +150,8 @@ static void ShiftUp(FembemFar f, PetscInt child, PetscInt parent, PetscComplex f
 
 static void ShiftDown(FembemFar f, PetscInt child, PetscInt parent, PetscComplex factor[])
 {
-  const FembemMoments *from = f->local + f->terms * parent;
-  FembemMoments       *to   = f->local + f->terms * child;
+  const FembemMoments *from = FembemFarMoments(f, f->local, parent);
+  FembemMoments       *to   = FembemFarMoments(f, f->local, child);
   PetscComplex         d;
 
   GetShift(f, child, parent, &d, factor);
@@ -190,8 +190,8 @@ static void Convert(FembemFar f, PetscInt target, PetscInt source)
   const PetscReal      mu = f->s->pairing.mat.mu, kappa = f->s->pairing.mat.kappa, F = 1. / (2. * PETSC_PI * (1. + kappa));
   const PetscReal      cV = 0.5 * F / mu, cD = 2. * F * mu;
   const PetscComplex   d = from->c - to->c, inv = PetscConjComplex(d) / FembemAbsSquare(d), iF = F * PETSC_i;
-  const FembemMoments *moment = f->moment + f->terms * source;
-  FembemMoments       *local  = f->local + f->terms * target, scaled[FEMBEM_FAR_TERMS];
+  const FembemMoments *moment = FembemFarMoments(f, f->moment, source);
+  FembemMoments       *local  = FembemFarMoments(f, f->local, target), scaled[FEMBEM_FAR_TERMS];
   const PetscInt       first = f->traction[source] ? FEMBEM_T1 : FEMBEM_U1, end = f->traction[target] ? FEMBEM_MOMENTS : FEMBEM_E1;
   PetscComplex         power = 1.;
 
@@ -228,14 +228,14 @@ static PetscErrorCode GetMoments(FembemFar f, const PetscReal t[], const PetscRe
   PetscComplex factor[FEMBEM_FAR_TERMS * FEMBEM_FAR_TERMS];
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < f->terms * f->clusters.n; ++i)
+  for (size_t i = 0; i < f->terms * (size_t)f->clusters.n; ++i)
     for (PetscInt m = 0; m < FEMBEM_MOMENTS; ++m) f->moment[i][m] = 0.;
   for (PetscInt id = f->clusters.n - 1; id >= 0; --id) {
     const FembemCluster *cl = &f->clusters.cluster[id];
 
     if (!f->mine[id]) continue;
     if (cl->left < 0) {
-      for (PetscInt i = cl->first; i < cl->end; ++i) FembemFarAddElement(f, i, t, u, f->moment + f->terms * id);
+      for (PetscInt i = cl->first; i < cl->end; ++i) FembemFarAddElement(f, i, t, u, FembemFarMoments(f, f->moment, id));
     } else {
       if (f->mine[cl->left]) ShiftUp(f, cl->left, id, factor);
       if (f->mine[cl->right]) ShiftUp(f, cl->right, id, factor);
@@ -252,9 +252,9 @@ PetscErrorCode FembemFarAdd(FembemFar f, const PetscReal t[], const PetscReal u[
 
   PetscFunctionBegin;
   PetscCall(GetMoments(f, t, u));
-  for (PetscInt i = 0; i < f->terms * f->clusters.n; ++i)
+  for (size_t i = 0; i < f->terms * (size_t)f->clusters.n; ++i)
     for (PetscInt m = 0; m < FEMBEM_MOMENTS; ++m) f->local[i][m] = 0.;
-  for (PetscInt k = 0; k < f->nfar; ++k) {
+  for (PetscCount k = 0; k < f->nfar; ++k) {
     if (f->mine[f->far[0][k]]) Convert(f, f->far[0][k], f->far[1][k]);
     if (f->mine[f->far[1][k]]) Convert(f, f->far[1][k], f->far[0][k]);
   }
@@ -263,7 +263,7 @@ PetscErrorCode FembemFarAdd(FembemFar f, const PetscReal t[], const PetscReal u[
 
     if (!f->mine[id]) continue;
     if (cl->left < 0) {
-      for (PetscInt i = cl->first; i < cl->end; ++i) FembemFarSeeElement(f, i, f->local + f->terms * id, onT, onU);
+      for (PetscInt i = cl->first; i < cl->end; ++i) FembemFarSeeElement(f, i, FembemFarMoments(f, f->local, id), onT, onU);
     } else {
       if (f->mine[cl->left]) ShiftDown(f, cl->left, id, factor);
       if (f->mine[cl->right]) ShiftDown(f, cl->right, id, factor);

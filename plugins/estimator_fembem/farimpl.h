@@ -25,9 +25,15 @@ struct _n_FembemFar {
   FembemMoments      *moment, *local; /* [terms] of each cluster */
   PetscBool          *mine;           /* [clusters] this rank evaluates in it, or in a part of it */
   PetscBool          *traction;       /* [clusters] some traction in it is unknown, or given and not zero */
-  PetscInt            nfar, nnear;
+  PetscCount          nfar, nnear;
   PetscInt           *far[2], *near[2]; /* pairs of clusters, each once */
 };
+
+/* The powers of a cluster among those of all */
+static inline FembemMoments *FembemFarMoments(FembemFar f, FembemMoments *all, PetscInt cluster)
+{
+  return all + (size_t)f->terms * cluster;
+}
 
 static inline PetscReal FembemRadius(const FembemCluster *cl)
 {

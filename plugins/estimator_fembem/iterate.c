@@ -31,11 +31,11 @@ static PetscInt CountPairs(const FembemCluster *a, const FembemCluster *b)
 }
 
 /* This rank's near pairs of leaves: those whose middle falls into its part of all pairs of elements */
-static PetscErrorCode GetMyPairs(const Operator *op, PetscBool mine[], PetscInt *npairs)
+static PetscErrorCode GetMyPairs(const Operator *op, PetscBool mine[], PetscCount *npairs)
 {
   const FembemClusters *tree;
   const PetscInt       *near[2];
-  PetscInt              nnear;
+  PetscCount            nnear;
   PetscInt64            total = 0, before = 0;
   PetscMPIInt           size, rank;
 
@@ -43,15 +43,30 @@ static PetscErrorCode GetMyPairs(const Operator *op, PetscBool mine[], PetscInt 
   PetscCallMPI(MPI_Comm_size(op->s->b->comm, &size));
   PetscCallMPI(MPI_Comm_rank(op->s->b->comm, &rank));
   FembemFarGetClusters(op->far, &tree, &nnear, near);
-  for (PetscInt k = 0; k < nnear; ++k) total += CountPairs(&tree->cluster[near[0][k]], &tree->cluster[near[1][k]]);
+  for (PetscCount k = 0; k < nnear; ++k) total += CountPairs(&tree->cluster[near[0][k]], &tree->cluster[near[1][k]]);
   *npairs = 0;
-  for (PetscInt k = 0; k < nnear; ++k) {
+  for (PetscCount k = 0; k < nnear; ++k) {
     const PetscInt n = CountPairs(&tree->cluster[near[0][k]], &tree->cluster[near[1][k]]);
 
     mine[k] = (PetscBool)((2 * before + n) * size / (2 * total) == rank);
     before += n;
     if (mine[k]) *npairs += n;
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Before any of them is evaluated; room: entries of this rank, of each component either the traction or the displacement is unknown */
+static PetscErrorCode CheckRoom(const FembemSystem *s, PetscCount npairs, PetscCount *room)
+{
+  PetscInt64 most;
+
+  PetscFunctionBegin;
+  *room = most = 2 * s->rows * s->rows * (PetscInt64)npairs;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPIU_INT64, MPI_MAX, s->b->comm));
+  AbutCheckInput(most <= PETSC_MAX_INT, s->b->comm,
+                 "estimator_fembem_max_elements: %" PetscInt_FMT " boundary elements of order %" PetscInt_FMT " have %" PetscInt64_FMT
+                 " matrix entries with near ones on a rank, more than PETSc's integers count; take more ranks or solve none",
+                 s->b->n, s->b->order, most);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -62,18 +77,18 @@ static PetscErrorCode AssembleNear(Operator *op)
   const FembemClusters *tree;
   const PetscInt       *near[2];
   const PetscInt        n = s->nt + s->nu;
-  PetscInt              nnear, room = 0;
+  PetscCount            nnear, npairs = 0, room = 0;
   PetscBool            *mine;
   FembemList            list = {.n = 0};
 
   PetscFunctionBegin;
   FembemFarGetClusters(op->far, &tree, &nnear, near);
   PetscCall(PetscMalloc1(nnear, &mine));
-  PetscCall(GetMyPairs(op, mine, &room));
-  room *= 2 * s->rows * s->rows; /* of each component either the traction or the displacement is unknown */
+  PetscCall(GetMyPairs(op, mine, &npairs));
+  PetscCall(CheckRoom(s, npairs, &room));
   PetscCall(PetscMalloc3(room, &list.row, room, &list.col, room, &list.value));
   s->list = &list;
-  for (PetscInt k = 0; k < nnear; ++k) {
+  for (PetscCount k = 0; k < nnear; ++k) {
     const FembemCluster *a = &tree->cluster[near[0][k]], *b = &tree->cluster[near[1][k]];
 
     for (PetscInt i = a->first; mine[k] && i < a->end; ++i)
@@ -269,7 +284,7 @@ static PetscErrorCode CreateOperator(FembemSystem *s, PetscReal tolerance, Opera
   const PetscInt        nt = s->rows * s->b->n, nu = 2 * s->b->nnodes, *first;
   const FembemClusters *tree;
   const PetscInt       *near[2];
-  PetscInt              nnear;
+  PetscCount            nnear;
   PetscMPIInt           size;
 
   PetscFunctionBegin;

@@ -134,8 +134,8 @@ PetscErrorCode FembemSystemCreate(const FembemBoundary *b, PetscReal scale, Femb
   s->V = s->W = s->D = NULL;
   s->list            = NULL;
   s->pairs           = 0;
-  PetscCall(PetscCalloc4(s->nt + s->nu, &s->rhs, b->n, &s->local, 3 * b->given->ncontours * s->nu, &s->motion, 3 * b->given->ncontours,
-                         &s->norm2));
+  PetscCall(PetscCalloc4(s->nt + s->nu, &s->rhs, b->n, &s->local, 3 * (size_t)b->given->ncontours * s->nu, &s->motion,
+                         3 * b->given->ncontours, &s->norm2));
   s->f = s->rhs;
   s->g = s->rhs + s->nt;
   for (PetscInt i = 0; i < b->n; ++i) GetLocal(s, i, &s->local[i]);

@@ -19,7 +19,8 @@ typedef struct {
 
 /* Entries of a sparse part of the matrix, those of equal place to be added */
 typedef struct {
-  PetscInt   n, *row, *col;
+  PetscCount n;
+  PetscInt  *row, *col;
   PetscReal *value;
 } FembemList;
 

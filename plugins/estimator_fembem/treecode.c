@@ -76,7 +76,8 @@ PetscErrorCode FembemTreeCreate(PetscInt n, const FembemSource source[], PetscRe
                          &tree->weight, ABUT_SIDE_NODES_MAX * tree->npoints, &tree->legendre));
   PetscCall(PetscDTGaussQuadrature(tree->npoints, -1., 1., tree->point, tree->weight));
   for (PetscInt g = 0; g < tree->npoints; ++g) FembemLegendreP(source[0].order, tree->point[g], &tree->legendre[ABUT_SIDE_NODES_MAX * g]);
-  for (PetscInt i = 0; i < tree->clusters.n; ++i) ClusterMoments(tree, &tree->clusters.cluster[i], &tree->moment[4 * tree->terms * i]);
+  for (PetscInt i = 0; i < tree->clusters.n; ++i)
+    ClusterMoments(tree, &tree->clusters.cluster[i], &tree->moment[4 * (size_t)tree->terms * i]);
   *newtree = tree;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -84,7 +85,7 @@ PetscErrorCode FembemTreeCreate(PetscInt n, const FembemSource source[], PetscRe
 /* Horner's scheme, from the highest term */
 static void ClusterAdd(FembemTree tree, PetscInt id, PetscComplex w, PetscComplex *phi, PetscComplex *S)
 {
-  const PetscComplex *m = &tree->moment[4 * tree->terms * id], v = PetscConjComplex(w) / FembemAbsSquare(w);
+  const PetscComplex *m = &tree->moment[4 * (size_t)tree->terms * id], v = PetscConjComplex(w) / FembemAbsSquare(w);
   PetscComplex        p = 0., q = 0., dp = 0., dn = 0.;
 
   for (PetscInt k = tree->terms - 1; k >= 0; --k) {
