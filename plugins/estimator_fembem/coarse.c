@@ -1,21 +1,31 @@
 #include "twolevel.h"
 
-/* Neighbours under the same conditions, on one side and about in one direction are merged to one straight element of order 1 */
+/* Neighbours under the same conditions, on one side and about in one direction are merged to one straight element of order 1; where there
+   are too many corners for that, and then too many changes of conditions, regardless of these */
 #define FEMBEM_COARSE_ELEMENTS 300 /* about: few enough for their dense system to cost less than the iterations it saves */
+#define FEMBEM_COARSE_MOST     500 /* of at most 4 unknowns each, but 3 a contour */
 #define FEMBEM_COARSE_COSINE   0.9 /* least, of the angle between the first element and another */
 
-static PetscBool BeginsGroup(const FembemSystem *s, PetscInt first, PetscInt e, PetscInt most)
+typedef enum {
+  MERGE_STRAIGHT,
+  MERGE_CORNERS,
+  MERGE_ALL
+} Merge;
+
+static PetscBool BeginsGroup(const FembemSystem *s, Merge merge, PetscInt first, PetscInt e, PetscInt most)
 {
   const AbutBoundary *g = s->b->given;
 
-  if (e - first >= most || g->side[e] != g->side[first]) return PETSC_TRUE;
-  for (PetscInt c = 0; c < 2; ++c)
+  if (e - first >= most) return PETSC_TRUE;
+  for (PetscInt c = 0; merge < MERGE_ALL && c < 2; ++c)
     if (g->condition[2 * e + c] != g->condition[2 * first + c]) return PETSC_TRUE;
-  return (PetscBool)(FembemDot(s->e[e].t, s->e[first].t) < FEMBEM_COARSE_COSINE * s->e[e].h * s->e[first].h);
+  if (merge > MERGE_STRAIGHT) return PETSC_FALSE;
+  return (PetscBool)(g->side[e] != g->side[first] ||
+                     FembemDot(s->e[e].t, s->e[first].t) < FEMBEM_COARSE_COSINE * s->e[e].h * s->e[first].h);
 }
 
 /* The first element of each group, group[ngroups] is their end; and the boundary's contours in groups */
-static void FindGroups(const FembemSystem *s, PetscInt group[], PetscInt contour[], PetscInt *ngroups)
+static void FindGroups(const FembemSystem *s, Merge merge, PetscInt group[], PetscInt contour[], PetscInt *ngroups)
 {
   const AbutBoundary *g    = s->b->given;
   const PetscInt      most = (g->n + FEMBEM_COARSE_ELEMENTS - 1) / FEMBEM_COARSE_ELEMENTS;
@@ -26,7 +36,7 @@ static void FindGroups(const FembemSystem *s, PetscInt group[], PetscInt contour
 
     contour[c] = *ngroups;
     for (PetscInt e = g->contour[c]; e < g->contour[c + 1]; ++e)
-      if (e == g->contour[c] || BeginsGroup(s, group[*ngroups - 1], e, size)) group[(*ngroups)++] = e;
+      if (e == g->contour[c] || BeginsGroup(s, merge, group[*ngroups - 1], e, size)) group[(*ngroups)++] = e;
   }
   contour[g->ncontours] = *ngroups;
   group[*ngroups]       = g->n;
@@ -94,17 +104,21 @@ PetscErrorCode FembemCoarseCreate(const FembemSystem *s, FembemCoarse *c)
   const FembemBoundary *b = s->b;
   const PetscInt        n = s->nt + s->nu;
   PetscInt             *group, ngroups;
+  PetscBool             positive;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(b->n + 1, &group));
   PetscCall(PetscMalloc1(b->given->ncontours + 1, &c->given.contour));
-  FindGroups(s, group, c->given.contour, &ngroups);
+  FindGroups(s, MERGE_STRAIGHT, group, c->given.contour, &ngroups);
+  for (PetscInt merge = MERGE_CORNERS; ngroups > FEMBEM_COARSE_MOST && merge <= MERGE_ALL; ++merge)
+    FindGroups(s, (Merge)merge, group, c->given.contour, &ngroups);
   PetscCall(SetGiven(s, group, ngroups, &c->given));
   PetscCall(FembemBoundaryCreate(b->comm, &c->given, b->young, (3. - b->mat.kappa) / 4., &c->b));
   PetscCall(FembemSystemCreate(&c->b, s->scale, &c->s));
-  PetscCall(FembemSystemFactor(&c->s));
+  PetscCall(FembemSystemFactor(&c->s, &positive));
   PetscCall(PetscMalloc4(n, &c->from[0], n, &c->from[1], n, &c->weight[0], n, &c->weight[1]));
   PetscCall(SetWeights(s, group, c));
+  for (PetscInt k = 0; !positive && k < n; ++k) c->from[0][k] = c->from[1][k] = -1; /* chords that cross may do this; blocks are left */
   PetscCall(PetscFree(group));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

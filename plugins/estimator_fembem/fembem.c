@@ -195,9 +195,10 @@ static PetscErrorCode AbutEstimatorCreate_Fembem(AbutEstimator est)
 .  -estimator_fembem_max_elements <100000>  - boundary elements up to which `galerkin` is solved; one of order p counts p times
 .  -estimator_fembem_dense_unknowns <3000>  - unknowns of `galerkin` up to which its system is a dense matrix, which all ranks assemble and
                                               factor together; above, GMRES takes memory in proportion to the boundary
--  -estimator_fembem_solve_tolerance <1e-6> - above that, residual of GMRES over the right-hand side, and relative error of what distant boundary
-                                              elements do to each other, in [1e-12, 0.01]. With 1e-6 indicators of at least a twentieth of the largest
-                                              are within 1e-3 of those of the dense system, whose quadrature at order 1 is not better
+-  -estimator_fembem_solve_tolerance <1e-6> - above that, residual of GMRES over the right-hand side, and relative error of what distant
+                                              elements do to each other, in [1e-12, 0.01]. With 1e-6 indicators of at least a twentieth of
+                                              the largest are within 1e-3 of those of the dense system, whose quadrature at order 1 is not
+                                              better
 
    Note:
    All ranks hold the boundary. Each evaluates an equal part of the pairs of elements, and the stress in its own cells. `-info

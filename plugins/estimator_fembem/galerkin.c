@@ -22,19 +22,6 @@ static PetscErrorCode Assemble(FembemSystem *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Factor(const FembemSystem *s, PetscInt n, PetscReal A[])
-{
-  PetscBool positive;
-
-  PetscFunctionBegin;
-  PetscCall(FembemDenseFactor(s->b->comm, n, A, &positive));
-  AbutCheckInput(positive, s->b->comm,
-                 "estimator_fembem_solve: the boundary-element system is singular (Poisson's ratio %g, %" PetscInt_FMT
-                 " boundary elements); give none",
-                 (double)((3. - s->b->mat.kappa) / 4.), s->b->n);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Each rigid motion that is free gets the stiffness of an average unknown, so that it becomes zero */
 static void HoldMotions(FembemSystem *s)
 {
@@ -50,18 +37,18 @@ static void HoldMotions(FembemSystem *s)
   }
 }
 
-/* Assembles and factors; V, W and D are what FembemSystemSolve() needs */
-PetscErrorCode FembemSystemFactor(FembemSystem *s)
+/* Assembles and factors; V, W and D are what FembemSystemSolve() needs, if they are positive */
+PetscErrorCode FembemSystemFactor(FembemSystem *s, PetscBool *positive)
 {
   PetscFunctionBegin;
   PetscCall(PetscCalloc3((size_t)s->nt * s->nt, &s->V, (size_t)s->nt * s->nu, &s->W, (size_t)s->nu * s->nu, &s->D));
   PetscCall(Assemble(s));
-  PetscCall(Factor(s, s->nt, s->V));
-  if (!s->nu) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FembemDenseFactor(s->b->comm, s->nt, s->V, positive));
+  if (!*positive || !s->nu) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(FembemDenseForward(s->b->comm, s->nt, s->nu, s->V, s->W));
   PetscCall(FembemDenseSchur(s->b->comm, s->nt, s->nu, s->W, s->D));
   HoldMotions(s);
-  PetscCall(Factor(s, s->nu, s->D));
+  PetscCall(FembemDenseFactor(s->b->comm, s->nu, s->D, positive));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -90,13 +77,18 @@ PetscErrorCode FembemSystemSolve(const FembemSystem *s, PetscReal f[], PetscReal
 PetscErrorCode FembemSolveGalerkin(FembemBoundary *b, FembemSolver solver, FembemCost *cost)
 {
   FembemSystem s;
+  PetscBool    positive;
 
   PetscFunctionBegin;
   PetscCall(FembemSystemCreate(b, FembemSystemScale(b), &s));
   *cost = (FembemCost){.unknowns = s.nt + s.nu};
   if (cost->unknowns > solver.dense) PetscCall(FembemSystemIterate(&s, solver.tolerance, cost));
   else {
-    PetscCall(FembemSystemFactor(&s));
+    PetscCall(FembemSystemFactor(&s, &positive));
+    AbutCheckInput(positive, b->comm,
+                   "estimator_fembem_solve: the boundary-element system is singular (Poisson's ratio %g, %" PetscInt_FMT
+                   " boundary elements); give none",
+                   (double)((3. - b->mat.kappa) / 4.), b->n);
     PetscCall(FembemSystemSolve(&s, s.f, s.g));
     cost->numbers = (size_t)s.nt * (s.nt + s.nu) + (size_t)s.nu * s.nu;
   }

@@ -48,7 +48,7 @@ PETSC_INTERN PetscErrorCode FembemSystemCreate(const FembemBoundary *, PetscReal
 PETSC_INTERN PetscReal      FembemSystemScale(const FembemBoundary *);
 PETSC_INTERN PetscErrorCode FembemSystemAddPair(FembemSystem *, PetscInt, PetscInt);
 PETSC_INTERN void           FembemSystemAddMass(FembemSystem *);
-PETSC_INTERN PetscErrorCode FembemSystemFactor(FembemSystem *);
+PETSC_INTERN PetscErrorCode FembemSystemFactor(FembemSystem *, PetscBool *);
 PETSC_INTERN PetscErrorCode FembemSystemSolve(const FembemSystem *, PetscReal[], PetscReal[]);
 PETSC_INTERN PetscErrorCode FembemSystemIterate(FembemSystem *, PetscReal, FembemCost *);
 PETSC_INTERN PetscErrorCode FembemSystemDestroy(FembemSystem *);

@@ -333,28 +333,6 @@ START_TEST(indicators_are_those_of_the_dense_system)
 }
 END_TEST
 
-/* A comb whose teeth are as long as the box: every element is near every other one */
-START_TEST(more_entries_than_integers_count_are_refused)
-{
-  const FembemSolver solver = {.dense = 0, .tolerance = 1e-4};
-  const PetscInt     m[4]   = {3000, 3000, 3000, 3000};
-  AbutBoundary       given;
-  FembemBoundary     b;
-  FembemCost         cost;
-  AbutConditionType  condition[16];
-  PetscErrorCode     code;
-
-  BoundaryConditions(supports[3], condition);
-  CkOk(BoundaryCreateBox(lo, hi, m, PETSC_FALSE, 4, &given));
-  for (PetscInt i = 1; i < given.n; i += 2)
-    for (PetscInt d = 0; d < 2; ++d) given.x[8 * i + d] = lo[d] + hi[d] - given.x[8 * i + d];
-  CkOk(BoundaryPlaceNodes(&given));
-  CkOk(FembemBoundaryCreate(PETSC_COMM_WORLD, &given, 2.1e5, 0.3, &b));
-  CkCatch(code = FembemSolveGalerkin(&b, solver, &cost));
-  ck_assert_int_eq(code, PETSC_ERR_USER_INPUT);
-}
-END_TEST
-
 int main(int argc, char **argv)
 {
   Suite *suite = suite_create("fembem_far");
@@ -370,7 +348,6 @@ int main(int argc, char **argv)
   tcase_add_loop_test(tests, the_tolerance_is_that_of_the_residual, 0, 7);
   tcase_add_test(tests, ranks_that_compute_unlike_have_one_solution);
   tcase_add_loop_test(tests, indicators_are_those_of_the_dense_system, 1, 3);
-  tcase_add_test(tests, more_entries_than_integers_count_are_refused);
   tcase_add_test(tests, what_iterations_hold_grows_with_the_boundary);
   suite_add_tcase(suite, tests);
   status = CkRun(suite);
