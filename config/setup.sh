@@ -145,11 +145,19 @@ if [ -n "$missing" ] && may_install; then
   find_missing
 fi
 [ -z "$missing" ] || say_missing
-if [ -z "$slepc_libs${PETSC_DIR-}" ] && may_install && apt-cache show libslepc-real-dev >/dev/null 2>&1; then
-  echo "Installing libslepc-real-dev, which is optional"
-  DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends libslepc-real-dev >/dev/null 2>&1
-  find_slepc
-fi
+
+# optional PACKAGE: installs it if it may; that there is none is no error
+optional() {
+  may_install && apt-cache show "$1" >/dev/null 2>&1 || return
+  echo "Installing $1, which is optional"
+  DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "$1" >/dev/null 2>&1
+}
+
+[ -n "$slepc_libs${PETSC_DIR-}" ] || { optional libslepc-real-dev && find_slepc; }
+# Debian's own BLAS is the reference, with which direct solvers take twice as long
+case $(ldconfig -p 2>/dev/null | sed -n 's|.*libblas\.so\.3 .*=> ||p' | head -n 1 | xargs -r readlink -f) in
+*/blas/libblas.so.3*) [ -n "${PETSC_DIR-}" ] || optional libopenblas0-serial ;;
+esac
 
 # venv IMPORT PACKAGE: a package of PyPI in .venv, which has none of the system's; IMPORT is the line of Python that needs it
 venv() {

@@ -128,12 +128,15 @@ def prediction_table(model, latency, bandwidth):
 
 
 def limits_table(model, latency, bandwidth):
-    yield "| unknowns | half is lost on | first by | contact model, GB a rank | without it on | then by |"
-    yield "|---" * 6 + "|"
+    yield "| unknowns | half is lost on | first by | its share of the time | contact model, GB a rank |"
+    yield "|---" * 5 + "|"
     for n in SIZES:
-        (ranks, key), (later, then) = (model.half(n, latency, bandwidth, without) for without in ((), ("replicated",)))
-        memory = 8 * model.state(1, n).m ** 2 / 1e9
-        yield f"| {n:.0e} | {ranks:,} ranks | {cause(key)} | {memory:.2g} | {later:,} ranks | {cause(then)} |"
+        ranks, key = model.half(n, latency, bandwidth)
+        if key is None:
+            continue
+        state = model.state(ranks, n)
+        found = model.seconds(state, latency, bandwidth)
+        yield f"| {n:.0e} | {ranks:,} ranks | {cause(key)} | {100 * found[key] / sum(found.values()):.0f} % | {8 * state.m**2 / ranks / 1e9:.2g} |"
 
 
 def tables(kept, latency, bandwidth):

@@ -24,8 +24,8 @@ from study import Kept, read, where  # noqa: E402
 
 SCENE = os.path.join(STUDIES, "shares", "layers_tol.yml")
 MODES = {"together": "", "split": "-scene_split"}  # all ranks on every body, or each body on ranks of its own
-# linear problems so exact that no mesh hangs on the number of ranks
-OPTIONS = "-estimator_type zz -adaptor_max_level 28 -adaptor_max_unknowns 1000000000 "
+# linear problems so exact that no mesh hangs on the number of ranks; the contact model as in large problems
+OPTIONS = "-estimator_type zz -adaptor_max_level 28 -adaptor_max_unknowns 1000000000 -snes_ddactive_share 0 "
 OPTIONS += " ".join(f"-{body}_ksp_type cg -{body}_pc_type hypre -{body}_ksp_rtol 1e-11" for body in ("lower", "upper"))
 CONSTANT = 1.4  # -scene_tol of a mesh, times the root of its unknowns
 TIMES = {"Set-up": "setup", "Sweeps": "solve", "Estimate": "estimate", "Adapt": "adapt", "Output": "output"}  # of a phase in the record
