@@ -5,11 +5,11 @@
    The compliance of the contact nodes, a symmetric dense matrix: products, sums with vv', factors of its part in some nodes.
    Columns are computed by all ranks, each its own. Then every rank gets them all; or, above a size, the ranks go on to share them, and with
    them the n^2 numbers and n^3 operations: products are put together from those of the ranks, and ScaLAPACK factors.
-   Vectors are whole on every rank. Results are the same, to the last bit, on all ranks: they decide alike.
+   Vectors are whole on every rank, and what follows from them is the same on all, to the last bit: ranks must decide alike.
 */
 
-/* S = 0. The ranks share it if there are more than share nodes. */
-PetscErrorCode AbutComplianceCreate_Private(MPI_Comm comm, PetscInt n, PetscInt share, AbutCompliance *compliance)
+/* S = 0. The ranks share it if there are more than share nodes, and ScaLAPACK. */
+PetscErrorCode AbutComplianceCreate_Private(MPI_Comm comm, PetscInt n, PETSC_UNUSED PetscInt share, AbutCompliance *compliance)
 {
   AbutCompliance S;
   PetscMPIInt    rank;
@@ -18,9 +18,11 @@ PetscErrorCode AbutComplianceCreate_Private(MPI_Comm comm, PetscInt n, PetscInt 
   PetscCall(PetscNew(&S));
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   PetscCallMPI(MPI_Comm_size(comm, &S->size));
-  S->comm   = comm;
-  S->n      = n;
+  S->comm = comm;
+  S->n    = n;
+#if defined(PETSC_HAVE_SCALAPACK)
   S->shared = (PetscBool)(S->size > 1 && n > share);
+#endif
   PetscCall(PetscMalloc2(S->size, &S->counts, S->size + 1, &S->first));
   for (PetscMPIInt r = 0; r <= S->size; ++r) S->first[r] = (PetscMPIInt)((PetscInt64)n * r / S->size);
   for (PetscMPIInt r = 0; r < S->size; ++r) S->counts[r] = S->first[r + 1] - S->first[r];
@@ -68,6 +70,14 @@ static PetscErrorCode AbutComplianceGather_Private(AbutCompliance S, PetscReal y
 {
   PetscFunctionBegin;
   PetscCallMPI(MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, y, S->counts, S->first, MPIU_REAL, S->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Values that every rank has computed for itself become those of the first one: on processors of several kinds they need not be the same */
+PetscErrorCode AbutComplianceAgree_Private(AbutCompliance S, PetscInt n, PetscReal x[])
+{
+  PetscFunctionBegin;
+  if (S->size > 1) PetscCallMPI(MPI_Bcast(x, (PetscMPIInt)n, MPIU_REAL, 0, S->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

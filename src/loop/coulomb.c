@@ -270,6 +270,7 @@ PetscErrorCode AbutContactModelSolveFriction_Private(AbutContactModel model, con
     else d[c] = PetscMax(-model->friction->mu[c] * d[normal], PetscMin(model->friction->mu[c] * d[normal], d[c]));
   }
   for (PetscInt c = 0; c < n && *solved; ++c) d[c] -= F[c];
+  PetscCall(AbutContactModelAgree_Private(model, d, a, loose, solved));
   PetscCall(PetscFree(g));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -261,8 +261,8 @@ static PetscErrorCode SNESView_DDActive(PETSC_UNUSED SNES snes, PetscViewer view
    cycling (the zone of the model does not settle), floating (contact does not hold a body), linear_solver, max_iterations.
 
    Limits: the model is dense in the contact nodes of all pairs, n: some 40 n^2 bytes, some n^3 operations a mesh and n^3/3 for each zone
-   that is tried, which the ranks share above a size; with friction they do not, and a node counts twice. Bodies that are no boxes are known at first as the layers of their bounding boxes. With
-   friction next to incompressible (nu = 0.4999 was tried) it may end in stagnation.
+   that is tried, which the ranks share above a size; with friction they do not, and a node counts twice. Bodies that are no boxes are known
+   at first as the layers of their bounding boxes. With friction next to incompressible (nu = 0.4999 was tried) it may end in stagnation.
 
    Sources: Hintermueller, Ito, Kunisch, SIAM J. Optim. 13 (2002), the active set; Farhat, Roux, IJNME 32 (1991), the balance of floating
    bodies; the closed forms of a layer under a harmonic pressure: Sneddon, Fourier Transforms (1951).

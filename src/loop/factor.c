@@ -66,6 +66,7 @@ static PetscErrorCode AbutFactorShared_Private(AbutCompliance S, PetscInt na, co
   PetscInt       first;
   PetscReal     *row, *d;
   Mat            dense;
+  PetscErrorCode error;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1((size_t)rows * na, &row));
@@ -82,7 +83,10 @@ static PetscErrorCode AbutFactorShared_Private(AbutCompliance S, PetscInt na, co
   PetscCall(PetscFree(row));
   PetscCall(MatConvert(dense, MATSCALAPACK, MAT_INITIAL_MATRIX, &S->scalapack));
   PetscCall(MatDestroy(&dense));
-  PetscCall(MatCholeskyFactor(S->scalapack, NULL, NULL));
+  PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
+  error = MatCholeskyFactor(S->scalapack, NULL, NULL);
+  PetscCall(PetscPopErrorHandler());
+  PetscCheck(!error, PETSC_COMM_SELF, PETSC_ERR_LIB, "The contact model is not positive definite: ScaLAPACK's potrf failed");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -93,24 +93,22 @@ PetscErrorCode AbutContactModelOpen_Private(AbutInterface f, AbutContactModel mo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-#define ABUT_CONTACT_NODES 30000 /* 7 GB for the compliance alone, on a rank that has it all */
+#define ABUT_CONTACT_NODES 30000 /* 7 GB for the compliance, or for the modes of a side on the rank that finds them */
 
 /* The compliance of the layers. With friction every rank has it all: coulomb.c looks into it. */
 static PetscErrorCode AbutContactModelCompliance_Private(AbutInterface f, AbutContactModel model)
 {
   MPI_Comm       comm  = PetscObjectComm((PetscObject)f);
   const PetscInt share = model->friction ? PETSC_MAX_INT : f->share;
-  PetscMPIInt    size;
-  PetscInt       most = ABUT_CONTACT_NODES;
+  PetscInt       most;
 
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_size(comm, &size));
-  if (model->n > share) most = (PetscInt)(most * PetscSqrtReal(size));
-  AbutCheckInput(model->n <= most, comm,
+  PetscCall(AbutModesCount_Private(f, &most));
+  most = PetscMax(most, model->n);
+  AbutCheckInput(most <= ABUT_CONTACT_NODES, comm,
                  "scene_pairs: %" PetscInt_FMT
-                 " contact nodes are too many for the dense contact model; give larger cells on the contact sides, at most %" PetscInt_FMT
-                 " nodes",
-                 model->n, most);
+                 " contact nodes are too many for the dense contact model; give larger cells on the contact sides, at most %d nodes",
+                 most, ABUT_CONTACT_NODES);
   PetscCall(AbutComplianceCreate_Private(comm, model->n, share, &model->S));
   PetscCall(AbutInterfaceLayers_Private(f, model));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -275,13 +273,16 @@ PetscErrorCode AbutContactModelLearn_Private(AbutContactModel model, const Petsc
    Shared, a rank keeps n^2/p of its numbers and does n^3/p of the operations, and ScaLAPACK factors it. Below some size that takes longer
    than what every rank does for itself.
 
-   Limits: needs a PETSc with ScaLAPACK. With friction every rank keeps the matrix of all nodes, whatever the size.
+   Limits: with a PETSc without ScaLAPACK nothing is shared. One rank finds the modes of a side, n^2 numbers. With friction every rank keeps
+   the matrix of all nodes, whatever the size.
 
 .seealso: `AbutInterfaceSetFromOptions()`, `SNESDDACTIVE`
 @*/
 PetscErrorCode AbutInterfaceSetShare(AbutInterface iface, PetscInt nodes)
 {
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(iface, ABUTINTERFACE_CLASSID, 1);
+  PetscCheck(nodes >= 0, PetscObjectComm((PetscObject)iface), PETSC_ERR_ARG_OUTOFRANGE, "%" PetscInt_FMT " contact nodes", nodes);
   iface->share = nodes;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -6,6 +6,20 @@
 #define ABUT_ROUNDOFF 1e-13 /* relative to the largest force or penetration */
 #define ABUT_SINGULAR 1e-10 /* of what a free motion meets when the others are held */
 
+/* The answer of AbutContactModelSolve_Private() of the first rank for all: on it hangs what they do together */
+PetscErrorCode AbutContactModelAgree_Private(AbutContactModel model, PetscReal d[], PetscReal a[], PetscInt *loose, PetscBool *solved)
+{
+  PetscReal said[2] = {(PetscReal)*loose, (PetscReal)*solved};
+
+  PetscFunctionBegin;
+  PetscCall(AbutComplianceAgree_Private(model->S, model->n, d));
+  PetscCall(AbutComplianceAgree_Private(model->S, model->m, a));
+  PetscCall(AbutComplianceAgree_Private(model->S, 2, said));
+  *loose  = (PetscInt)said[0];
+  *solved = (PetscBool)(said[1] != 0.);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* X = (S + soft)^{-1} [G b] on the active nodes */
 static PetscErrorCode AbutContactModelActive_Private(AbutContactModel model, PetscInt na)
 {
@@ -77,6 +91,13 @@ static PetscErrorCode AbutContactModelZone_Private(AbutContactModel model, const
     if (zone[i]) model->active[na++] = i;
   PetscCall(AbutContactModelActive_Private(model, na));
   PetscCall(AbutContactModelBalance_Private(model, na, a, loose));
+  if (model->S->shared) { /* the next factors are made together */
+    PetscReal which = (PetscReal)*loose;
+
+    PetscCall(AbutComplianceAgree_Private(model->S, m, a));
+    PetscCall(AbutComplianceAgree_Private(model->S, 1, &which));
+    *loose = (PetscInt)which;
+  }
   if (*loose >= 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArrayzero(F, n));
   for (PetscInt j = 0; j < na; ++j) {
@@ -214,6 +235,7 @@ PetscErrorCode AbutContactModelSolve_Private(AbutContactModel model, const Petsc
   }
   *solved = (PetscBool)(!wrong && *loose < 0);
   for (PetscInt i = 0; i < n; ++i) d[i] = *solved ? PetscMax(0., d[i]) - F[i] : 0.;
+  PetscCall(AbutContactModelAgree_Private(model, d, a, loose, solved));
   PetscCall(PetscFree2(zone, g));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

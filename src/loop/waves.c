@@ -1,39 +1,32 @@
 #include <abut/private/loopimpl.h>
 #include <petscblaslapack.h>
 
-/* The modes of contact sides, by which layers.c knows bodies: each rank finds a block of them, and the blocks go round */
+/* The modes of contact sides, by which layers.c knows bodies. One rank finds all those of a side: found by several, those whose eigenvalues
+   lie close together would not be orthogonal, as there are on sides refined alike at both ends. Then each rank gets a block of them, and
+   the blocks go round. */
 
-/* Eigenvectors from..to-1 by columns V of a symmetric tridiagonal matrix, diagonal d and beside it e. LAPACK's fast way (n operations a
-   number) now and then gives up on strongly graded sides; then its slow one is taken, which finds them all by n^3. */
-static PetscErrorCode AbutModesTridiagonal_Private(PetscInt n, PetscInt from, PetscInt to, PetscReal d[], PetscReal e[], PetscReal xi[],
-                                                   PetscReal V[])
+/* Eigenvectors by columns V of a symmetric tridiagonal matrix, diagonal d and beside it e. LAPACK's fast way (n^2 operations) now and
+   then gives up on strongly graded sides; then its slow one (n^3) is taken. */
+static PetscErrorCode AbutModesTridiagonal_Private(PetscInt n, PetscReal d[], PetscReal e[], PetscReal xi[], PetscReal V[])
 {
-  const PetscInt count = to - from;
-  PetscBLASInt   bn, first, last, found, info, lwork, liwork, *iwork, *support;
-  PetscReal      zero = 0., *work, *value, *d2, *e2;
+  PetscBLASInt bn, found, one = 1, info, lwork, liwork, *iwork, *support;
+  PetscReal    zero = 0., *work, *value, *d2, *e2;
 
   PetscFunctionBegin;
   PetscCall(PetscBLASIntCast(n, &bn));
-  PetscCall(PetscBLASIntCast(from + 1, &first));
-  PetscCall(PetscBLASIntCast(to, &last));
   PetscCall(PetscBLASIntCast(18 * n, &lwork));
   PetscCall(PetscBLASIntCast(10 * n, &liwork));
   PetscCall(PetscMalloc6(lwork, &work, liwork, &iwork, 2 * n, &support, n, &value, n, &d2, n, &e2));
   PetscCall(PetscArraycpy(d2, d, n));
   PetscCall(PetscArraycpy(e2, e, n));
-  PetscCallBLAS("LAPACKstegr", LAPACKstegr_("V", count == n ? "A" : "I", &bn, d, e, &zero, &zero, &first, &last, &zero, &found, value, V,
-                                            &bn, support, work, &lwork, iwork, &liwork, &info));
-  if (info || found != count) {
-    PetscReal *every;
-
-    PetscCall(PetscMalloc1((size_t)n * n, &every));
-    PetscCallBLAS("LAPACKsteqr", LAPACKsteqr_("I", &bn, d2, e2, every, &bn, work, &info));
+  PetscCallBLAS("LAPACKstegr", LAPACKstegr_("V", "A", &bn, d, e, &zero, &zero, &one, &one, &zero, &found, value, V, &bn, support, work,
+                                            &lwork, iwork, &liwork, &info));
+  if (info || found != bn) {
+    PetscCallBLAS("LAPACKsteqr", LAPACKsteqr_("I", &bn, d2, e2, V, &bn, work, &info));
     PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK steqr failed with info %d", (int)info);
-    PetscCall(PetscArraycpy(value, d2 + from, count));
-    PetscCall(PetscArraycpy(V, every + (size_t)n * from, n * count));
-    PetscCall(PetscFree(every));
+    PetscCall(PetscArraycpy(value, d2, n));
   }
-  for (PetscInt k = 0; k < count; ++k) xi[k] = PetscSqrtReal(PetscMax(0., value[k]));
+  for (PetscInt k = 0; k < n; ++k) xi[k] = PetscSqrtReal(PetscMax(0., value[k]));
   PetscCall(PetscFree6(work, iwork, support, value, d2, e2));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -58,23 +51,22 @@ static PetscErrorCode AbutModesGetSide_Private(AbutInterface f, PetscInt t, cons
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The modes from, from+1, ... of a block at the nodes of a side that may move, 0 at the others; positive at the lower end, so that those of
-   opposite sides match */
-static PetscErrorCode AbutModesOfSide_Private(const AbutSide *s, PetscInt from, AbutModes *m, PetscReal *shape[])
+/* All modes of a side, by columns V at the nodes that may move; positive at the lower end, so that those of opposite sides match */
+static PetscErrorCode AbutModesOfSide_Private(const AbutSide *s, PetscReal xi[], PetscReal V[])
 {
   const PetscInt  end = 2 * (s->n - 1), axis = PetscAbsReal(s->x[end + 1] - s->x[1]) > PetscAbsReal(s->x[end] - s->x[0]) ? 1 : 0;
   const PetscBool rise = (PetscBool)(s->x[axis] < s->x[end + axis]);
-  PetscReal      *D, *d, *e, *V;
-  PetscInt       *node, all = 0;
+  PetscReal      *D, *d, *e;
+  PetscInt        first, n = 0;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc4(s->n, &D, s->n, &d, s->n, &e, s->n, &node));
+  PetscCall(PetscCalloc3(s->n, &D, s->n, &d, s->n, &e));
   for (PetscInt i = 0; i < s->n; ++i) {
     if (i + 1 < s->n) {
       D[i] += 0.5 * AbutSideElement_Private(s, i);
       D[i + 1] += 0.5 * AbutSideElement_Private(s, i);
     }
-    if (!s->fixed[i]) node[all++] = i;
+    if (!s->fixed[i]) ++n;
   }
   for (PetscInt i = 0; i + 1 < s->n; ++i) {
     const PetscReal k = 1. / AbutSideElement_Private(s, i);
@@ -83,33 +75,37 @@ static PetscErrorCode AbutModesOfSide_Private(const AbutSide *s, PetscInt from, 
     d[i + 1] += k / D[i + 1];
     e[i] = -k / PetscSqrtReal(D[i] * D[i + 1]);
   }
-  /* prescribed nodes are the ends of a side, or all of it: what is left is one run */
-  PetscCall(PetscMalloc1((size_t)all * m->n, &V));
-  PetscCall(PetscCalloc1((size_t)m->n * s->n, shape));
-  if (m->n) PetscCall(AbutModesTridiagonal_Private(all, from, from + m->n, d + node[0], e + node[0], m->xi, V));
-  for (PetscInt k = 0; k < m->n; ++k) {
-    const PetscReal sign = V[k * all + (rise ? 0 : all - 1)] < 0. ? -1. : 1.;
+  for (first = 0; first < s->n && s->fixed[first];) ++first; /* fixed are the ends of a side, or all of it: what is left is one run */
+  if (n) PetscCall(AbutModesTridiagonal_Private(n, d + first, e + first, xi, V));
+  for (PetscInt k = 0; k < n; ++k) {
+    const PetscReal sign = V[k * n + (rise ? 0 : n - 1)] < 0. ? -1. : 1.;
 
-    for (PetscInt i = 0; i < all; ++i) (*shape)[k * s->n + node[i]] = sign * V[k * all + i] / PetscSqrtReal(D[node[i]]);
+    for (PetscInt i = 0; i < n; ++i) V[k * n + i] *= sign / PetscSqrtReal(D[first + i]);
   }
-  PetscCall(PetscFree(V));
-  PetscCall(PetscFree4(D, d, e, node));
+  PetscCall(PetscFree3(D, d, e));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A rank's block on side t, without values yet; from: its first mode, most: the largest number of modes of a side */
+/* The block of a rank: modes from..to-1 of all */
+static void AbutModesBlock_Private(PetscInt all, PetscInt most, PetscMPIInt rank, PetscMPIInt size, PetscInt *from, PetscInt *to)
+{
+  *from = PetscMin(all, (PetscInt)((PetscInt64)most * rank / size));
+  *to   = PetscMin(all, (PetscInt)((PetscInt64)most * (rank + 1) / size));
+}
+
+/* A rank's block on side t, without values yet; most: the largest number of modes of a side */
 static PetscErrorCode AbutModesSize_Private(AbutInterface f, AbutContactModel model, PetscInt t, PetscInt most, PetscMPIInt rank,
-                                            PetscInt *from, AbutModes *m)
+                                            AbutModes *m)
 {
   const AbutSide *side;
   PetscMPIInt     size;
-  PetscInt        all;
+  PetscInt        all, from, to;
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)f), &size));
   PetscCall(AbutModesGetSide_Private(f, t, &side, &all));
-  *from     = PetscMin(all, (PetscInt)((PetscInt64)most * rank / size));
-  m->n      = PetscMin(all, (PetscInt)((PetscInt64)most * (rank + 1) / size)) - *from;
+  AbutModesBlock_Private(all, most, rank, size, &from, &to);
+  m->n      = to - from;
   m->first  = model->first[t / 2];
   m->rows   = model->normals[t / 2];
   m->length = 0.;
@@ -119,8 +115,34 @@ static PetscErrorCode AbutModesSize_Private(AbutInterface f, AbutContactModel mo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* From the rank that found them each one gets its block of the modes of a side: xi, and V by columns into own */
+static PetscErrorCode AbutModesDeal_Private(MPI_Comm comm, PetscMPIInt owner, PetscInt all, PetscInt most, const PetscReal xi[],
+                                            const PetscReal V[], AbutModes *m, PetscReal own[])
+{
+  PetscMPIInt  size, *counts, *first;
+  MPI_Datatype column;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCall(PetscMalloc2(size, &counts, size, &first));
+  for (PetscMPIInt r = 0; r < size; ++r) {
+    PetscInt from, to;
+
+    AbutModesBlock_Private(all, most, r, size, &from, &to);
+    first[r]  = (PetscMPIInt)from;
+    counts[r] = (PetscMPIInt)(to - from);
+  }
+  PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)all, MPIU_REAL, &column));
+  PetscCallMPI(MPI_Type_commit(&column));
+  PetscCallMPI(MPI_Scatterv(xi, counts, first, MPIU_REAL, m->xi, (PetscMPIInt)m->n, MPIU_REAL, owner, comm));
+  PetscCallMPI(MPI_Scatterv(V, counts, first, column, own, (PetscMPIInt)m->n, column, owner, comm));
+  PetscCallMPI(MPI_Type_free(&column));
+  PetscCall(PetscFree2(counts, first));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The values of the block of this rank: modes as penetrations of their pair's contact nodes */
-static PetscErrorCode AbutModesFill_Private(AbutInterface f, AbutContactModel model, PetscInt t, PetscInt from, AbutModes *m)
+static PetscErrorCode AbutModesFill_Private(AbutInterface f, AbutContactModel model, PetscInt t, const PetscReal V[], AbutModes *m)
 {
   const PetscInt   pair = t / 2;
   PetscInt         which, n, all;
@@ -130,21 +152,20 @@ static PetscErrorCode AbutModesFill_Private(AbutInterface f, AbutContactModel mo
 
   PetscFunctionBegin;
   PetscCall(AbutModesGetSide_Private(f, t, &side, &all));
-  PetscCall(AbutModesOfSide_Private(side, from, m, &shape));
   PetscCall(AbutPairGetPressureNodes(f->pair[pair], &which, &n, &x, &D));
-  PetscCall(PetscCalloc2(f->offset[2 * pair + 2] - f->offset[2 * pair], &trace, n, &g));
+  PetscCall(PetscCalloc3(side->n, &shape, f->offset[2 * pair + 2] - f->offset[2 * pair], &trace, n, &g));
   for (PetscInt k = 0; k < m->n; ++k) {
-    PetscCall(AbutPairSetNormalTrace(f->pair[pair], t % 2, shape + k * side->n, trace + f->offset[t] - f->offset[2 * pair]));
+    for (PetscInt i = 0, free = 0; i < side->n; ++i) shape[i] = side->fixed[i] ? 0. : V[k * all + free++];
+    PetscCall(AbutPairSetNormalTrace(f->pair[pair], t % 2, shape, trace + f->offset[t] - f->offset[2 * pair]));
     PetscCall(AbutPairComputePenetration(f->pair[pair], trace, trace + f->offset[2 * pair + 1] - f->offset[2 * pair], g));
     for (PetscInt c = 0; c < m->rows; ++c) m->W[k * m->rows + c] = g[model->node[m->first + c]] - model->open[m->first + c];
   }
-  PetscCall(PetscFree2(trace, g));
-  PetscCall(PetscFree(shape));
+  PetscCall(PetscFree3(shape, trace, g));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The largest number of modes of a side */
-static PetscErrorCode AbutModesCount_Private(AbutInterface f, PetscInt *most)
+PetscErrorCode AbutModesCount_Private(AbutInterface f, PetscInt *most)
 {
   PetscFunctionBegin;
   *most = 0;
@@ -159,19 +180,53 @@ static PetscErrorCode AbutModesCount_Private(AbutInterface f, PetscInt *most)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* This rank's blocks of the modes of all sides that are no rigid obstacles, m [2*npairs] */
+/* The blocks of side t, whose modes the owner finds; xi and V are its room for them */
+static PetscErrorCode AbutModesOfTrace_Private(AbutInterface f, AbutContactModel model, PetscInt t, PetscInt most, PetscMPIInt owner,
+                                               const PetscReal xi[], const PetscReal V[], AbutModes *m)
+{
+  MPI_Comm        comm = PetscObjectComm((PetscObject)f);
+  const AbutSide *side;
+  PetscMPIInt     rank;
+  PetscInt        all;
+  PetscReal      *own;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCall(AbutModesGetSide_Private(f, t, &side, &all));
+  PetscCall(AbutModesSize_Private(f, model, t, most, rank, m));
+  PetscCall(PetscMalloc1((size_t)all * m->n, &own));
+  PetscCall(AbutModesDeal_Private(comm, owner, all, most, xi, V, m, own));
+  PetscCall(AbutModesFill_Private(f, model, t, own, m));
+  PetscCall(PetscFree(own));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* This rank's blocks of the modes of all sides that are no rigid obstacles, m [2*npairs]. As many sides at once as there are ranks: each
+   rank finds the modes of one of them. */
 PetscErrorCode AbutModesCreate_Private(AbutInterface f, AbutContactModel model, AbutModes m[])
 {
-  PetscMPIInt rank;
-  PetscInt    most, from;
+  PetscMPIInt rank, size;
+  PetscInt    most;
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_rank(PetscObjectComm((PetscObject)f), &rank));
+  PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)f), &size));
   PetscCall(AbutModesCount_Private(f, &most));
-  for (PetscInt t = 0; t < 2 * f->npairs; ++t) {
-    if (f->bodyof[t] < 0) continue;
-    PetscCall(AbutModesSize_Private(f, model, t, most, rank, &from, &m[t]));
-    PetscCall(AbutModesFill_Private(f, model, t, from, &m[t]));
+  for (PetscInt begin = 0; begin < 2 * f->npairs; begin += size) {
+    const PetscInt end = PetscMin(2 * f->npairs, begin + size), mine = begin + rank;
+    PetscReal     *xi = NULL, *V = NULL;
+
+    if (mine < end && f->bodyof[mine] >= 0) {
+      const AbutSide *side;
+      PetscInt        all;
+
+      PetscCall(AbutModesGetSide_Private(f, mine, &side, &all));
+      PetscCall(PetscMalloc2(all, &xi, (size_t)all * all, &V));
+      PetscCall(AbutModesOfSide_Private(side, xi, V));
+    }
+    for (PetscInt t = begin; t < end; ++t)
+      if (f->bodyof[t] >= 0) PetscCall(AbutModesOfTrace_Private(f, model, t, most, (PetscMPIInt)(t - begin), xi, V, &m[t]));
+    PetscCall(PetscFree2(xi, V));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -181,7 +236,7 @@ PetscErrorCode AbutModesPass_Private(AbutInterface f, AbutContactModel model, Pe
 {
   MPI_Comm    comm = PetscObjectComm((PetscObject)f);
   PetscMPIInt rank, size, next, before, tag;
-  PetscInt    most, from;
+  PetscInt    most;
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
@@ -194,7 +249,7 @@ PetscErrorCode AbutModesPass_Private(AbutInterface f, AbutContactModel model, Pe
     AbutModes there;
 
     if (f->bodyof[t] < 0) continue;
-    PetscCall(AbutModesSize_Private(f, model, t, most, (before + size - step) % size, &from, &there));
+    PetscCall(AbutModesSize_Private(f, model, t, most, (before + size - step) % size, &there));
     PetscCallMPI(MPI_Sendrecv(m[t].xi, (PetscMPIInt)((m[t].rows + 1) * m[t].n), MPIU_REAL, next, tag, there.xi,
                               (PetscMPIInt)((there.rows + 1) * there.n), MPIU_REAL, before, tag, comm, MPI_STATUS_IGNORE));
     PetscCall(PetscFree(m[t].xi));

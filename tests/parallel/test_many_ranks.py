@@ -1,7 +1,7 @@
 """Up to sixteen ranks, more than cores and more than cells of a body: the same meshes, and the same record to the tenth digit"""
 import os, sys, tempfile
 
-from abut import LAYERS, ROOT, case
+from abut import LAYERS, ROOT, case, run
 from same import farthest_key, outcome
 
 sys.path.append(os.path.join(ROOT, "examples", "stack"))
@@ -66,3 +66,26 @@ def test_a_stack_of_five():
 
 def test_hertz_from_gmsh():
     hertz()
+
+
+ALIKE = """scene: {bodies: block, pairs: foot}
+block:
+  mesh: {box: "0,0,16,1", cells: "32,2", shape: quad, order: 1, size: "0.04+0.25*max(0,min(x,16-x)-1)+0.5*y"}
+  material: {young: 2.1e5, poisson: 0.3}
+  bc_left: {u1: 0}
+  bc_top: {u2: "-1.e-3*(1+0.05*x)"}
+foot:
+  pair: {bodies: block, sides: bottom, penalty: 0, height: 1, obstacle: y}
+"""
+
+
+def test_a_side_refined_alike_at_both_ends():
+    """The contact model's modes have pairs of eigenvalues that are the same to round-off, here and there on two ranks: as many sweeps as on one"""
+    with tempfile.NamedTemporaryFile("w", suffix=".yml") as f:
+        f.write(ALIKE)
+        f.flush()
+        one = run(f.name, EXACT)
+        for ranks, shared in (4, ""), (5, "-snes_ddactive_share 0"), (8, "-snes_ddactive_share 0"), (8, ""):
+            other = run(f.name, EXACT, *shared.split(), ranks=ranks)
+            worst = farthest_key(one, other)
+            assert worst[0] <= 1e-9 and other["sweeps"] == one["sweeps"], (ranks, shared, worst)

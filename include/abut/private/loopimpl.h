@@ -73,12 +73,7 @@ typedef struct {
   PetscReal  length;
 } AbutModes;
 
-/* Contact nodes above which the ranks share the contact model's matrix */
-#if defined(PETSC_HAVE_SCALAPACK)
-  #define ABUT_MODEL_SHARE 1000
-#else
-  #define ABUT_MODEL_SHARE PETSC_MAX_INT
-#endif
+#define ABUT_MODEL_SHARE 1000 /* contact nodes above which the ranks share the contact model's matrix */
 
 struct _p_AbutInterface {
   PETSCHEADER(int);
@@ -150,6 +145,7 @@ PETSC_EXTERN PetscErrorCode AbutComplianceCreate_Private(MPI_Comm, PetscInt, Pet
 PETSC_EXTERN PetscErrorCode AbutComplianceDestroy_Private(AbutCompliance *);
 PETSC_EXTERN PetscReal     *AbutComplianceGetColumns_Private(AbutCompliance, PetscInt *, PetscInt *);
 PETSC_EXTERN PetscErrorCode AbutComplianceAssemble_Private(AbutCompliance);
+PETSC_INTERN PetscErrorCode AbutComplianceAgree_Private(AbutCompliance, PetscInt, PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutComplianceMult_Private(AbutCompliance, const PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutComplianceAdd_Private(AbutCompliance, PetscInt, const PetscReal[], const PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutComplianceGetDiagonal_Private(AbutCompliance, PetscReal[]);
@@ -158,6 +154,7 @@ PETSC_EXTERN PetscErrorCode AbutComplianceSolve_Private(AbutCompliance, PetscInt
 PETSC_INTERN PetscErrorCode AbutComplianceFreeFactor_Private(AbutCompliance);
 
 /* waves.c */
+PETSC_INTERN PetscErrorCode AbutModesCount_Private(AbutInterface, PetscInt *);
 PETSC_INTERN PetscErrorCode AbutModesCreate_Private(AbutInterface, AbutContactModel, AbutModes[]);
 PETSC_INTERN PetscErrorCode AbutModesPass_Private(AbutInterface, AbutContactModel, PetscMPIInt, AbutModes[]);
 PETSC_INTERN PetscErrorCode AbutModesDestroy_Private(AbutInterface, AbutModes[]);
@@ -170,6 +167,7 @@ PETSC_EXTERN PetscErrorCode AbutInterfaceComply_Private(AbutInterface, AbutConta
 PETSC_EXTERN PetscErrorCode AbutContactModelLearn_Private(AbutContactModel, const PetscReal[], const PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutContactModelSolve_Private(AbutContactModel, const PetscReal[], const PetscReal[], PetscReal[], PetscReal[],
                                                           PetscInt *, PetscBool *);
+PETSC_INTERN PetscErrorCode AbutContactModelAgree_Private(AbutContactModel, PetscReal[], PetscReal[], PetscInt *, PetscBool *);
 PETSC_INTERN void           AbutContactModelPressures_Private(const AbutContactModel, PetscInt, const PetscReal[], PetscReal *const[]);
 PETSC_INTERN void           AbutContactModelForces_Private(const AbutContactModel, PetscInt, PetscReal *const[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutContactModelEnergy_Private(AbutContactModel, const PetscReal[], const PetscReal[], PetscReal *);
