@@ -1,4 +1,4 @@
-#include "fembemimpl.h"
+#include "chain.h"
 #include <petscblaslapack.h>
 
 /*
@@ -8,6 +8,9 @@
    r/2 + beta goes to the piece before it, r/2 - beta to the one behind it, and the betas minimise the kinks of t in the two elements next
    to each such end. A closed contour without a corner is cut at its first node, where beta closes it again.
 */
+#define FEMBEM_SHARES_DENSE 64    /* betas up to which their problem is dense: for few, gelss is as fast and knows any rank */
+#define FEMBEM_SHARES_RANK  1e-10 /* relative: what is determined by less is not */
+
 typedef struct {
   PetscInt          first, n; /* elements: first, the one after it, ... */
   AbutConditionType type;     /* ABUT_DISPLACEMENT or ABUT_CONTACT */
@@ -19,9 +22,10 @@ typedef struct {
   FembemBoundary *b;
   PetscInt        c; /* component */
   PetscInt        npieces, nshares;
-  Piece          *piece; /* [n] */
-  PetscInt       *share; /* [n] beta of the start of each element, -1 if none */
-  PetscReal      *value; /* [3*(order+1)*n] room for the t of the pieces */
+  Piece          *piece;                   /* [n] */
+  PetscInt       *share;                   /* [n] beta of the start of each element, -1 if none */
+  PetscInt       *firstpiece, *firstshare; /* [contours+1] */
+  PetscReal      *value;                   /* [3*(order+1)*n] room for the t of the pieces */
 } Recovery;
 
 static inline AbutConditionType ConditionOf(const Recovery *r, PetscInt e)
@@ -80,7 +84,9 @@ static void FindPieces(Recovery *r)
 
     while (start < g->contour[k + 1] && !IsCut(r, start)) ++start;
     if (start == g->contour[k + 1]) start = g->contour[k];
-    e = start;
+    r->firstpiece[k] = r->npieces;
+    r->firstshare[k] = r->nshares;
+    e                = start;
     do {
       if (ConditionOf(r, e) != ABUT_TRACTION) {
         if (e == start || IsCut(r, e)) {
@@ -92,6 +98,8 @@ static void FindPieces(Recovery *r)
       e = next[e];
     } while (e != start);
   }
+  r->firstpiece[g->ncontours] = r->npieces;
+  r->firstshare[g->ncontours] = r->nshares;
   for (PetscInt k = 0; k < r->npieces; ++k) {
     Piece   *p   = &r->piece[k];
     PetscInt end = p->first;
@@ -157,12 +165,12 @@ static void Kink(const Recovery *r, const Piece *p, PetscBool atend, PetscReal k
   }
 }
 
-/* The betas: a small least-squares problem, of least norm where the kinks leave one free */
-static PetscErrorCode SolveShares(const Recovery *r, PetscReal beta[])
+/* Few betas: a dense least-squares problem, of least norm where the kinks leave one free */
+static PetscErrorCode SolveFewShares(const Recovery *r, PetscReal beta[])
 {
   const PetscInt m   = 2 * r->nshares;
   PetscInt       row = 0;
-  PetscReal     *A, *s, kink[3], rcond = 1e-10;
+  PetscReal     *A, *s, kink[3], rcond = FEMBEM_SHARES_RANK;
   PetscScalar   *work;
   PetscBLASInt   bm, bn, one = 1, rank, lwork, info;
 
@@ -185,6 +193,55 @@ static PetscErrorCode SolveShares(const Recovery *r, PetscReal beta[])
   PetscCallBLAS("LAPACKgelss", LAPACKgelss_(&bm, &bn, &one, A, &bm, beta, &bm, s, &rcond, &rank, work, &lwork, &info));
   PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "Tractions at corners: gelss gives %d", (int)info);
   PetscCall(PetscFree3(A, s, work));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The kink at an end of a piece whose contour has n betas from the given one on, which is the last one of their chain */
+static void AddKink(const Recovery *r, const Piece *p, PetscBool atend, PetscInt first, PetscInt n, FembemChainRow R[], PetscReal *largest)
+{
+  FembemChainRow row = {.own = 0.};
+  PetscInt       k   = n - 1;
+  PetscReal      kink[3];
+
+  Kink(r, p, atend, kink);
+  for (PetscInt end = 1; end >= 0; --end) {
+    const PetscInt  place = (p->share[end] - first + n - 1) % n;
+    const PetscReal value = end ? kink[2] : -kink[1];
+
+    if (p->share[end] < 0) continue;
+    *largest = PetscMax(*largest, PetscAbsReal(value));
+    if (place == n - 1) row.last += value;
+    else {
+      row.next = row.own;
+      row.own  = value;
+      k        = place;
+    }
+  }
+  row.rhs = -kink[0];
+  FembemChainAdd(n, R, k, row);
+}
+
+/* Many corners: a kink is of the betas at the two ends of its piece, those of a contour are a chain */
+static PetscErrorCode SolveManyShares(const Recovery *r, PetscReal beta[])
+{
+  FembemChainRow *R;
+  PetscReal      *x;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc2(r->nshares, &R, r->nshares, &x));
+  for (PetscInt c = 0; c < r->b->given->ncontours; ++c) {
+    const PetscInt first = r->firstshare[c], n = r->firstshare[c + 1] - first;
+    PetscReal      largest = 0.;
+
+    if (!n) continue;
+    PetscCall(PetscArrayzero(R, n));
+    for (PetscInt k = r->firstpiece[c]; k < r->firstpiece[c + 1]; ++k)
+      for (PetscInt end = 0; end < 2; ++end)
+        if (r->piece[k].share[end] >= 0) AddKink(r, &r->piece[k], (PetscBool)end, first, n, R, &largest);
+    PetscCall(FembemChainSolve(n, R, FEMBEM_SHARES_RANK * largest, x));
+    for (PetscInt k = 0; k < n; ++k) beta[first + (k + 1) % n] = x[k];
+  }
+  PetscCall(PetscFree2(R, x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -212,13 +269,15 @@ PetscErrorCode FembemRecoverTractions(FembemBoundary *b)
   PetscReal *beta;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc4(b->n, &r.piece, b->n, &r.share, 3 * (b->order + 1) * b->n, &r.value, 2 * b->n, &beta));
+  PetscCall(PetscMalloc6(b->n, &r.piece, b->n, &r.share, b->given->ncontours + 1, &r.firstpiece, b->given->ncontours + 1, &r.firstshare,
+                         3 * (b->order + 1) * b->n, &r.value, 2 * b->n, &beta));
   for (r.c = 0; r.c < 2; ++r.c) {
     FindPieces(&r);
     for (PetscInt k = 0; k < r.npieces; ++k) PetscCall(SolvePiece(&r, &r.piece[k]));
-    if (r.nshares) PetscCall(SolveShares(&r, beta));
+    if (r.nshares > FEMBEM_SHARES_DENSE) PetscCall(SolveManyShares(&r, beta));
+    else if (r.nshares) PetscCall(SolveFewShares(&r, beta));
     for (PetscInt k = 0; k < r.npieces; ++k) StorePiece(&r, &r.piece[k], beta);
   }
-  PetscCall(PetscFree4(r.piece, r.share, r.value, beta));
+  PetscCall(PetscFree6(r.piece, r.share, r.firstpiece, r.firstshare, r.value, beta));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -33,12 +33,7 @@ START_TEST(corners_cost_no_more_than_unknowns)
     PetscReal      s[6];
 
     CkOk(BoundaryCreateBox(lo, hi, m, PETSC_FALSE, 1, &given));
-    for (PetscInt i = given.n - 1; i > 0; i -= 2) {
-      const PetscReal *from = &given.x[2 * (i - 1)], *to = &given.x[2 * given.next[i]];
-
-      given.x[2 * i] += 0.25 * (to[1] - from[1]);
-      given.x[2 * i + 1] -= 0.25 * (to[0] - from[0]);
-    }
+    BoundaryRaiseTeeth(1, 0.25, &given);
     BoundaryFill(&field, held, &given);
     CkOk(FembemBoundaryCreate(PETSC_COMM_WORLD, &given, field.young, field.poisson, &b));
     CkOk(FembemRecoverTractions(&b));

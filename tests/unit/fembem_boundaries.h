@@ -156,6 +156,25 @@ static inline PetscErrorCode BoundaryCreateBox(const PetscReal lo[2], const Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Teeth on a contour, of so many elements on each flank, height in lengths of their base; nodes between the elements' ends stay behind */
+static inline void BoundaryRaiseTeeth(PetscInt flank, PetscReal height, AbutBoundary *b)
+{
+  const PetscInt n = b->n, two = 2 * b->order;
+
+  for (PetscInt i = flank; i < n; i += 2 * flank) {
+    const PetscReal *end[2] = {&b->x[two * (i - flank)], &b->x[two * ((i + flank) % n)]};
+    PetscReal       *tip    = &b->x[two * i];
+
+    tip[0] += height * (end[1][1] - end[0][1]);
+    tip[1] -= height * (end[1][0] - end[0][0]);
+    for (PetscInt k = 1; k < 2 * flank; ++k) {
+      const PetscReal s = PetscAbsReal((PetscReal)k / flank - 1.); /* from the tip */
+
+      for (PetscInt d = 0; k != flank && d < 2; ++d) b->x[two * (i - flank + k) + d] = (1. - s) * tip[d] + s * end[k > flank][d];
+    }
+  }
+}
+
 /* The part of element e in the data of a field: displacements at its nodes, in each component tractions there, or the forces by which its
    nodes hold the tractions, integrals with their functions */
 static inline void BoundaryFillElement(const Field *f, PetscInt e, AbutBoundary *b)
