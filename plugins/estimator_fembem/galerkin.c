@@ -29,11 +29,12 @@ static void HoldMotions(FembemSystem *s)
 
   for (PetscInt k = 0; k < s->nu; ++k) stiffness += s->D[k + (size_t)s->nu * k] / s->nu;
   for (PetscInt m = 0; m < s->nmotions; ++m) {
-    const PetscReal *r = s->motion + (size_t)s->nu * m;
+    const FembemMotion *motion = &s->motion[m];
+    const PetscInt      first = motion->first, n = motion->end - first;
 
-    for (PetscInt i = 0; i < s->nu; ++i) {
-      for (PetscInt j = 0; r[i] != 0. && j < s->nu; ++j) s->D[j + (size_t)s->nu * i] += stiffness / s->norm2[m] * r[i] * r[j];
-    }
+    for (PetscInt i = 0; i < n; ++i)
+      for (PetscInt j = 0; j < n; ++j)
+        s->D[first + j + (size_t)s->nu * (first + i)] += stiffness / motion->norm2 * motion->r[i] * motion->r[j];
   }
 }
 

@@ -171,15 +171,14 @@ static PetscErrorCode SetRightHandSide(Operator *op)
 /* Each rigid motion that is free gets the stiffness of an unknown of D, so that it becomes zero */
 static void HoldMotions(const FembemSystem *s, const PetscReal u[], PetscReal y[])
 {
-  const FembemMaterial *mat = &s->pairing.mat;
-
   for (PetscInt m = 0; m < s->nmotions; ++m) {
-    const PetscReal *r   = s->motion + (size_t)s->nu * m;
-    PetscReal        sum = 0.;
+    const FembemMotion *motion = &s->motion[m];
+    const PetscInt      first = motion->first, n = motion->end - first;
+    PetscReal           sum = 0.;
 
-    for (PetscInt k = 0; k < s->nu; ++k) sum += r[k] * u[k];
-    sum *= mat->mu / (PETSC_PI * (1. + mat->kappa) * s->norm2[m]);
-    for (PetscInt k = 0; k < s->nu; ++k) y[k] -= sum * r[k];
+    for (PetscInt k = 0; k < n; ++k) sum += motion->r[k] * u[first + k];
+    sum *= FembemMotionStiffness(s, motion);
+    for (PetscInt k = 0; k < n; ++k) y[first + k] -= sum * motion->r[k];
   }
 }
 

@@ -78,11 +78,25 @@ static PetscErrorCode FindFreeMotions(const FembemSystem *s, PetscInt first, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* D + W^T V^-1 W does not feel these motions: their values at the unknown displacements, and the squares of their norms */
+/* The unknown displacements of nodes first..end-1: a contour's are numbered one after the other */
+static void FindRange(const FembemSystem *s, PetscInt first, PetscInt end, FembemMotion *m)
+{
+  PetscInt n = 0;
+
+  m->first = s->nu;
+  for (PetscInt i = 2 * first; i < 2 * end; ++i) {
+    if (s->uindex[i] < 0) continue;
+    m->first = PetscMin(m->first, s->uindex[i]);
+    ++n;
+  }
+  m->end = m->first + n;
+}
+
+/* D + W^T V^-1 W does not feel these motions */
 static PetscErrorCode FindMotions(FembemSystem *s)
 {
   const AbutBoundary *g = s->b->given;
-  PetscReal           v[9];
+  PetscReal           v[9], *room = s->value;
   PetscInt            nfree = 0;
 
   PetscFunctionBegin;
@@ -95,14 +109,18 @@ static PetscErrorCode FindMotions(FembemSystem *s)
     /* the rigid motion of a hole alone is felt nowhere; that of the outer contour moves the holes */
     PetscCall(FindFreeMotions(s, area < 0. ? first : 0, area < 0. ? end : s->b->nnodes, v, &nfree));
     for (PetscInt m = 0; m < nfree; ++m, ++s->nmotions) {
-      PetscReal *r = s->motion + (size_t)s->nu * s->nmotions;
+      FembemMotion *motion = &s->motion[s->nmotions];
 
+      FindRange(s, first, end, motion);
+      motion->r     = room;
+      motion->norm2 = 0.;
+      room += motion->end - motion->first;
       for (PetscInt i = 2 * first; i < 2 * end; ++i) {
-        const PetscInt k = s->uindex[i];
+        const PetscInt k = s->uindex[i] - motion->first;
 
-        if (k < 0) continue;
-        for (PetscInt j = 0; j < 3; ++j) r[k] += v[3 * m + j] * RigidMotion(s, i / 2, i % 2, j);
-        s->norm2[s->nmotions] += r[k] * r[k];
+        if (s->uindex[i] < 0) continue;
+        for (PetscInt j = 0; j < 3; ++j) motion->r[k] += v[3 * m + j] * RigidMotion(s, i / 2, i % 2, j);
+        motion->norm2 += motion->r[k] * motion->r[k];
       }
     }
   }
@@ -134,8 +152,7 @@ PetscErrorCode FembemSystemCreate(const FembemBoundary *b, PetscReal scale, Femb
   s->V = s->W = s->D = NULL;
   s->list            = NULL;
   s->pairs           = 0;
-  PetscCall(PetscCalloc4(s->nt + s->nu, &s->rhs, b->n, &s->local, 3 * (size_t)b->given->ncontours * s->nu, &s->motion,
-                         3 * b->given->ncontours, &s->norm2));
+  PetscCall(PetscCalloc4(s->nt + s->nu, &s->rhs, b->n, &s->local, 3 * b->given->ncontours, &s->motion, 3 * s->nu, &s->value));
   s->f = s->rhs;
   s->g = s->rhs + s->nt;
   for (PetscInt i = 0; i < b->n; ++i) GetLocal(s, i, &s->local[i]);
@@ -148,6 +165,6 @@ PetscErrorCode FembemSystemDestroy(FembemSystem *s)
   PetscFunctionBegin;
   PetscCall(PetscFree3(s->V, s->W, s->D));
   PetscCall(PetscFree6(s->e, s->t, s->u, s->tindex, s->uindex, s->loaded));
-  PetscCall(PetscFree4(s->rhs, s->local, s->motion, s->norm2));
+  PetscCall(PetscFree4(s->rhs, s->local, s->motion, s->value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -24,25 +24,40 @@ typedef struct {
   PetscReal *value;
 } FembemList;
 
+/* A rigid motion of a contour that no given displacement prevents; it carries no stress */
+typedef struct {
+  PetscInt   first, end; /* the contour's unknown displacements */
+  PetscReal *r, norm2;   /* [end-first] its values there, and the sum of their squares */
+} FembemMotion;
+
 typedef struct {
   const FembemBoundary *b;
   FembemElement        *e; /* [n] scaled */
   FembemPairing         pairing;
-  PetscReal             scale;          /* of lengths */
-  PetscInt              rows;           /* 2*(order+1), of an element */
-  PetscReal            *t, *u;          /* [rows*n], [2*nnodes] scaled values */
-  PetscInt              nt, nu;         /* unknowns */
-  PetscInt             *tindex;         /* [rows*n] number of the unknown, -1 where given */
-  PetscInt             *uindex;         /* [2*nnodes] */
-  PetscBool            *loaded;         /* [n] the element has a given traction that is not zero */
-  FembemLocal          *local;          /* [n] */
-  PetscReal            *rhs, *f, *g;    /* [nt+nu], and its two parts */
-  PetscReal            *V, *W, *D;      /* [nt*nt], [nt*nu], [nu*nu] by columns */
-  FembemList           *list;           /* NULL: entries go to V, W and D */
-  PetscInt              nmotions;       /* rigid motions that no given displacement prevents; they carry no stress */
-  PetscReal            *motion, *norm2; /* [nu] each, at the unknown displacements, and the squares of their norms */
-  PetscInt              pairs;          /* of elements, evaluated on this rank */
+  PetscReal             scale;       /* of lengths */
+  PetscInt              rows;        /* 2*(order+1), of an element */
+  PetscReal            *t, *u;       /* [rows*n], [2*nnodes] scaled values */
+  PetscInt              nt, nu;      /* unknowns */
+  PetscInt             *tindex;      /* [rows*n] number of the unknown, -1 where given */
+  PetscInt             *uindex;      /* [2*nnodes] */
+  PetscBool            *loaded;      /* [n] the element has a given traction that is not zero */
+  FembemLocal          *local;       /* [n] */
+  PetscReal            *rhs, *f, *g; /* [nt+nu], and its two parts */
+  PetscReal            *V, *W, *D;   /* [nt*nt], [nt*nu], [nu*nu] by columns */
+  FembemList           *list;        /* NULL: entries go to V, W and D */
+  PetscInt              nmotions;
+  FembemMotion         *motion; /* [nmotions] in the order of the contours */
+  PetscReal            *value;  /* [3*nu] those of the motions */
+  PetscInt              pairs;  /* of elements, evaluated on this rank */
 } FembemSystem;
+
+/* By which iterations hold a motion: that of an unknown of D, over the square of the norm */
+static inline PetscReal FembemMotionStiffness(const FembemSystem *s, const FembemMotion *m)
+{
+  const FembemMaterial *mat = &s->pairing.mat;
+
+  return mat->mu / (PETSC_PI * (1. + mat->kappa) * m->norm2);
+}
 
 PETSC_INTERN PetscErrorCode FembemSystemCreate(const FembemBoundary *, PetscReal, FembemSystem *);
 PETSC_INTERN PetscReal      FembemSystemScale(const FembemBoundary *);
