@@ -89,6 +89,39 @@ static PetscErrorCode SetBlocks(FembemTwoLevel two, Mat near)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static void HoldMotion(const FembemSystem *s, const FembemMotion *motion, PetscInt n, const PetscInt unknown[], PetscReal block[])
+{
+  const PetscInt  first = s->nt + motion->first, end = s->nt + motion->end;
+  const PetscReal stiffness = FembemMotionStiffness(s, motion);
+
+  for (PetscInt i = 0; i < n; ++i)
+    for (PetscInt j = 0; j < n; ++j)
+      if (unknown[i] >= first && unknown[i] < end && unknown[j] >= first && unknown[j] < end)
+        block[n * i + j] -= stiffness * motion->r[unknown[i] - first] * motion->r[unknown[j] - first];
+}
+
+/* As the operator does, but only where one leaf has all of a contour: its block would be singular. Motions come in the order of leaves */
+static void HoldMotions(const FembemSystem *s, FembemTwoLevel two)
+{
+  const PetscInt begin = two->begin[two->rank];
+  PetscInt       next  = 0;
+
+  for (PetscInt i = begin; i < two->begin[two->rank + 1]; ++i) {
+    const PetscInt n = two->first[i + 1] - two->first[i], *unknown = two->unknown + two->first[i];
+    PetscInt       lo = s->nu, hi = 0; /* of the displacements in it, numbered one after the other */
+
+    for (PetscInt k = 0; k < n; ++k) {
+      if (unknown[k] < s->nt) continue;
+      lo = PetscMin(lo, unknown[k] - s->nt);
+      hi = PetscMax(hi, unknown[k] - s->nt + 1);
+    }
+    if (!hi) continue;
+    while (next < s->nmotions && s->motion[next].first < lo) ++next;
+    for (PetscInt m = next; m < s->nmotions && s->motion[m].end <= hi; ++m)
+      HoldMotion(s, &s->motion[m], n, unknown, two->block + two->offset[i] - two->offset[begin]);
+  }
+}
+
 static PetscErrorCode FactorBlocks(FembemTwoLevel two)
 {
   const PetscInt begin = two->begin[two->rank];
@@ -125,6 +158,7 @@ PetscErrorCode FembemTwoLevelCreate(const FembemSystem *s, const FembemClusters 
   DealOut(two, size);
   PetscCall(PetscMalloc1(two->place[two->rank + 1] - two->place[two->rank], &two->pivot));
   PetscCall(SetBlocks(two, near));
+  HoldMotions(s, two);
   PetscCall(FactorBlocks(two));
   *newtwo = two;
   PetscFunctionReturn(PETSC_SUCCESS);
