@@ -104,7 +104,6 @@ PetscErrorCode FembemCoarseCreate(const FembemSystem *s, FembemCoarse *c)
   const FembemBoundary *b = s->b;
   const PetscInt        n = s->nt + s->nu;
   PetscInt             *group, ngroups;
-  PetscBool             positive;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(b->n + 1, &group));
@@ -115,10 +114,9 @@ PetscErrorCode FembemCoarseCreate(const FembemSystem *s, FembemCoarse *c)
   PetscCall(SetGiven(s, group, ngroups, &c->given));
   PetscCall(FembemBoundaryCreate(b->comm, &c->given, b->young, (3. - b->mat.kappa) / 4., &c->b));
   PetscCall(FembemSystemCreate(&c->b, s->scale, &c->s));
-  PetscCall(FembemSystemFactor(&c->s, &positive));
+  PetscCall(FembemSystemFactor(&c->s, &c->positive)); /* chords that cross may spoil it; blocks are left */
   PetscCall(PetscMalloc4(n, &c->from[0], n, &c->from[1], n, &c->weight[0], n, &c->weight[1]));
   PetscCall(SetWeights(s, group, c));
-  for (PetscInt k = 0; !positive && k < n; ++k) c->from[0][k] = c->from[1][k] = -1; /* chords that cross may do this; blocks are left */
   PetscCall(PetscFree(group));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -8,7 +8,8 @@ typedef struct {
   AbutBoundary   given;
   FembemBoundary b;
   FembemSystem   s;
-  PetscInt      *from[2]; /* [unknowns of the fine system] coarse unknowns, -1 for none */
+  PetscBool      positive; /* definite: else it corrects nothing */
+  PetscInt      *from[2];  /* [unknowns of the fine system] coarse unknowns, -1 for none */
   PetscReal     *weight[2];
 } FembemCoarse;
 PETSC_INTERN PetscErrorCode FembemCoarseCreate(const FembemSystem *, FembemCoarse *);
