@@ -227,7 +227,7 @@ def invented(law, work):
 
 def test_the_model_finds_a_law_and_what_it_leads_to():
     """Five phases of n/p seconds each, and in one of them m^3 on every rank: half of the time is lost on p ranks when p m^3 > 5 n"""
-    from model import Model, State
+    from model import MODES, Model, State
 
     model = Model(invented(lambda p, n: 7 * math.log2(p) + 0.5 * (p - 1), lambda p, n: n / p + 1e-3 * n**1.5))
     assert abs(model.count("Sweeps", "others", State(10**4, 10**9, 0.0), 1) / (7 * math.log2(1e4) + 0.5 * 9999) - 1) < 1e-6
@@ -235,6 +235,7 @@ def test_the_model_finds_a_law_and_what_it_leads_to():
     lost = lambda p: (5 * n + 1e3) / (p * (5 * n / p + 1e3)) < 0.5
     ranks, (phase, cause) = model.half(n, 0.0, 1.0)
     assert (phase, cause) == ("Sweeps", "replicated") and lost(ranks) and not lost(ranks // 2), (ranks, cause)
-    assert Model(invented(lambda p, n: 7 * math.log2(p), lambda p, n: n / p)).half(n, 0.0, 1.0) == (math.inf, None)
+    alone, why = Model(invented(lambda p, n: 7 * math.log2(p), lambda p, n: n / p)).half(n, 0.0, 1.0)  # but for the modes of 100 nodes
+    assert why == ("Sweeps", "modes") and alone / 2 < 5 * n / (MODES * 100**2) <= alone, (alone, why)
     slow, (phase, cause) = model.half(n, 10.0, 1.0)
     assert (phase, cause) == ("Sweeps", "messages") and slow < ranks, (slow, cause)

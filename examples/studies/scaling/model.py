@@ -6,7 +6,8 @@ among those that the algorithm can have. Seconds are
 
   work + latency (messages of multigrid and others + steps) + (bytes sent + bytes gathered)/bandwidth
 
-of that rank: nothing overlaps, nothing waits beyond that, and no message slows another one down.
+of that rank: nothing overlaps, nothing waits beyond that, and no message slows another one down. What one rank does while all others wait,
+too little to be seen at the sizes measured, was measured alone, and is added.
 """
 import collections, itertools, math
 
@@ -20,6 +21,7 @@ CAUSES = {  # of seconds, as the page names them
     "columns": "a part of the contact model",
     "replicated": "contact model on every rank",
     "boundary": "traces and boundaries on every rank",
+    "modes": "modes of a side on one rank",
     "fixed": "work whatever the size",
     "messages": "messages",
     "steps": "reductions and gathers",
@@ -64,6 +66,7 @@ TERMS = {
     },  # none that grows with p: more ranks than cores share caches, which looks like that
 }
 MESSAGES = ("multigrid", "others")
+MODES = 8.5e-8 * 2  # seconds/m^2 of all meshes, each with half the unknowns of the next: LAPACK's stegr, m = 2,000 to 16,000
 CAUSE = {"n/p": "share", "1": "fixed", "m": "boundary", "m^2": "replicated", "m^3": "replicated", "m^2/p": "columns", "m^3/p": "columns"}  # of work
 DIVIDED = ("share", "columns")  # causes of seconds that more ranks make less
 GROWTH = {"1": lambda s: 1.0, "log n": lambda s: log2(s.n), "log p": lambda s: log2(s.p)}  # of iterations and meshes
@@ -127,6 +130,7 @@ class Model:
         for phase in PHASES:
             for name, c in self.coefficients[phase, "work"].items():
                 found[phase, CAUSE[name]] += c * TERMS["work"][name](state)
+            found[phase, "modes"] += MODES * state.m**2 if phase == "Sweeps" else 0.0
             found[phase, "messages"] += latency * sum(self.count(phase, count, state) for count in MESSAGES)
             found[phase, "steps"] += latency * self.count(phase, "steps", state)
             found[phase, "bytes"] += (self.count(phase, "bytes", state) + self.count(phase, "gathered", state)) / bandwidth
