@@ -86,7 +86,8 @@ static PetscErrorCode AbutFactorShared_Private(AbutCompliance S, PetscInt na, co
   PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
   error = MatCholeskyFactor(S->scalapack, NULL, NULL);
   PetscCall(PetscPopErrorHandler());
-  PetscCheck(!error, PETSC_COMM_SELF, PETSC_ERR_LIB, "The contact model is not positive definite: ScaLAPACK's potrf failed");
+  PetscCheck(!error, PETSC_COMM_SELF, PETSC_ERR_LIB,
+             "The contact model was not factored, as one is not that is not positive definite: MatCholeskyFactor returned %d", (int)error);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

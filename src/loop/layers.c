@@ -3,7 +3,7 @@
 
 /* The compliance of the bodies as if each were an elastic layer between its contact side and the side opposite to it: closed forms for a
    pressure cos(xi x). It replaces no solve; it predicts the contact zone and preconditions, and what it misses the sweeps correct.
-   Some n^3 operations and n^2 numbers, which the ranks share: each finds a block of the modes, and adds all blocks to its columns. */
+   Some n^3 operations and n^2 numbers, which the ranks share: blocks of the modes go round, and each rank adds them to its columns. */
 
 /* How far each face of a layer of half height h gives way, smooth faces, equal pressures cos(xi x) on both: k/xi 2 sinh^2 s/(sinh 2s +
    2s), s = xi h. By symmetry also a layer of height h on a smooth rigid base. k = 2(1-nu^2)/E; xi -> 0: k h/2; xi -> infinity: k/xi, the

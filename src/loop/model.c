@@ -100,15 +100,18 @@ static PetscErrorCode AbutContactModelCompliance_Private(AbutInterface f, AbutCo
 {
   MPI_Comm       comm  = PetscObjectComm((PetscObject)f);
   const PetscInt share = model->friction ? PETSC_MAX_INT : f->share;
-  PetscInt       most;
+  PetscInt       modes, most = ABUT_CONTACT_NODES;
+  PetscMPIInt    size;
 
   PetscFunctionBegin;
-  PetscCall(AbutModesCount_Private(f, &most));
-  most = PetscMax(most, model->n);
-  AbutCheckInput(most <= ABUT_CONTACT_NODES, comm,
-                 "scene_pairs: %" PetscInt_FMT
-                 " contact nodes are too many for the dense contact model; give larger cells on the contact sides, at most %d nodes",
-                 most, ABUT_CONTACT_NODES);
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCall(AbutModesCount_Private(f, &modes));
+  if (model->n > share) most = (PetscInt)(most * PetscSqrtReal(size));
+  AbutCheckInput(model->n <= most && modes <= ABUT_CONTACT_NODES, comm,
+                 "scene_pairs: %" PetscInt_FMT " nodes in contacts, %" PetscInt_FMT
+                 " on one side, are too many for the dense contact model; give larger cells on the contact sides, at most %" PetscInt_FMT
+                 " and %d nodes",
+                 model->n, modes, most, ABUT_CONTACT_NODES);
   PetscCall(AbutComplianceCreate_Private(comm, model->n, share, &model->S));
   PetscCall(AbutInterfaceLayers_Private(f, model));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -195,6 +198,7 @@ PetscErrorCode AbutContactModelEnergy_Private(AbutContactModel model, const Pets
   PetscCall(AbutComplianceMult_Private(model->S, v, Sv));
   for (PetscInt i = 0; i < model->n; ++i) e += v[i] * (Sv[i] + (soft ? soft[i] * v[i] : 0.));
   PetscCall(PetscFree(Sv));
+  PetscCall(AbutComplianceAgree_Private(model->S, 1, &e)); /* it decides whether the loop goes on */
   *energy = PetscMax(0., e);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -282,6 +286,7 @@ PetscErrorCode AbutInterfaceSetShare(AbutInterface iface, PetscInt nodes)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(iface, ABUTINTERFACE_CLASSID, 1);
+  PetscValidLogicalCollectiveInt(iface, nodes, 2);
   PetscCheck(nodes >= 0, PetscObjectComm((PetscObject)iface), PETSC_ERR_ARG_OUTOFRANGE, "%" PetscInt_FMT " contact nodes", nodes);
   iface->share = nodes;
   PetscFunctionReturn(PETSC_SUCCESS);

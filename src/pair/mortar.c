@@ -6,6 +6,14 @@
 
 #define ABUT_STIFFER 1.5
 
+/* Nodes whose normal displacement is prescribed carry no pressure: on such a side none would */
+static PetscBool AbutSideCarries_Private(const AbutSide *s)
+{
+  for (PetscInt i = 0; i < s->n; ++i)
+    if (!s->fixed[i]) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 /* The side with more elements on the common part carries the pressures, of equally many that of the lower order, then the first; but never
    that of the clearly stiffer body. Pressures that only a stiff body resolves are held by its small compliance alone, and those that only
    one side resolves are rough: both oscillate. */
@@ -36,6 +44,7 @@ static PetscErrorCode AbutPairChoosePressureSide_Private(AbutPair pair)
     modulus[s] = young[s] / (1. - poisson[s] * poisson[s]);
   }
   if (modulus[pair->which] > ABUT_STIFFER * modulus[!pair->which]) pair->which = !pair->which;
+  if (!AbutSideCarries_Private(pair->nodes[pair->which])) pair->which = !pair->which;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -135,6 +135,17 @@ def test_two_blocks_without_a_gap_are_pressed_uniformly():
     case("H07", "sweeps of the default loop, which has the zone from the start", max(sweeps), 3)
 
 
+def test_a_side_that_is_held_throughout_carries_no_pressures_for_the_other_one():
+    """A block pressed onto a finer one whose upper side is prescribed: p = closure E'/H, either body first"""
+    scene = "-scene_bodies a,b -scene_pairs mid -mid_pair_penalty 0 -b_bc_top_u2 0 -a_bc_top_u2 -1e-3"
+    for name, y, cells in ("a", 1, "6,3"), ("b", 0, "8,4"):
+        scene += f" -{name}_mesh_box 0,{y},4,{y + 1} -{name}_mesh_cells {cells} -{name}_material_young {YOUNG} -{name}_material_poisson 0.3 -{name}_bc_left_u1 0"
+    exact = 1e-3 * YOUNG / (1 - 0.3**2)
+    for pair in "-mid_pair_bodies a,b -mid_pair_sides bottom,top", "-mid_pair_bodies b,a -mid_pair_sides top,bottom":
+        record = run(None, *scene.split(), *pair.split(), "-b_bc_bottom_u2 0")
+        assert relative(record["pair.mid.force"], 4 * exact) < 1e-9 and relative(record["pair.mid.pressure_max"], exact) < 1e-9, record
+
+
 def zone(*options):
     """The record, and where its nodes are closed"""
     with tempfile.TemporaryDirectory() as folder:
