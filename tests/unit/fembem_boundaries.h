@@ -74,6 +74,18 @@ static inline void PolynomialDisplacement(PetscReal E, PetscReal nu, const Petsc
   u[1] = PetscImaginaryPartComplex(v);
 }
 
+/* The largest difference of two arrays, over the largest value of the second one */
+static inline PetscReal BoundaryDifference(PetscInt n, const PetscReal x[], const PetscReal y[])
+{
+  PetscReal worst = 0., largest = 0.;
+
+  for (PetscInt i = 0; i < n; ++i) {
+    worst   = PetscMax(worst, PetscAbsReal(x[i] - y[i]));
+    largest = PetscMax(largest, PetscAbsReal(y[i]));
+  }
+  return worst / largest;
+}
+
 /* Contours of equally many elements, everything else zero */
 static inline PetscErrorCode BoundaryAllocate(PetscInt n, PetscInt ncontours, PetscInt order, AbutBoundary *b)
 {
