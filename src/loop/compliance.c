@@ -26,9 +26,11 @@ PetscErrorCode AbutComplianceCreate_Private(MPI_Comm comm, PetscInt n, PETSC_UNU
   PetscCall(PetscMalloc2(S->size, &S->counts, S->size + 1, &S->first));
   for (PetscMPIInt r = 0; r <= S->size; ++r) S->first[r] = (PetscMPIInt)((PetscInt64)n * r / S->size);
   for (PetscMPIInt r = 0; r < S->size; ++r) S->counts[r] = S->first[r + 1] - S->first[r];
-  S->from = S->first[rank];
-  S->to   = S->first[rank + 1];
-  PetscCall(PetscCalloc1((size_t)n * (S->shared ? S->to - S->from : n), &S->a));
+  S->from  = S->first[rank];
+  S->to    = S->first[rank + 1];
+  S->begin = S->shared ? S->from : 0;
+  S->end   = S->shared ? S->to : n;
+  PetscCall(PetscCalloc1((size_t)n * (S->end - S->begin), &S->a));
   *compliance = S;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -49,7 +51,7 @@ PetscReal *AbutComplianceGetColumns_Private(AbutCompliance S, PetscInt *from, Pe
 {
   *from = S->from;
   *to   = S->to;
-  return S->shared ? S->a : S->a + (size_t)S->n * S->from;
+  return S->a + (size_t)S->n * (S->from - S->begin);
 }
 
 PetscErrorCode AbutComplianceAssemble_Private(AbutCompliance S)
@@ -65,19 +67,19 @@ PetscErrorCode AbutComplianceAssemble_Private(AbutCompliance S)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What this rank has of a vector, values from..to-1, to all ranks */
+/* What this rank has of a vector, a value for each column that it keeps, to all ranks */
 static PetscErrorCode AbutComplianceGather_Private(AbutCompliance S, PetscReal y[])
 {
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, y, S->counts, S->first, MPIU_REAL, S->comm));
+  if (S->shared) PetscCallMPI(MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, y, S->counts, S->first, MPIU_REAL, S->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Values that every rank has computed for itself become those of the first one: on processors of several kinds they need not be the same */
-PetscErrorCode AbutComplianceAgree_Private(AbutCompliance S, PetscInt n, PetscReal x[])
+PetscErrorCode AbutComplianceAgree_Private(AbutCompliance S, PetscInt n, MPI_Datatype type, void *x)
 {
   PetscFunctionBegin;
-  if (S->size > 1) PetscCallMPI(MPI_Bcast(x, (PetscMPIInt)n, MPIU_REAL, 0, S->comm));
+  if (S->size > 1) PetscCallMPI(MPI_Bcast(x, (PetscMPIInt)n, type, 0, S->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -89,10 +91,10 @@ PetscErrorCode AbutComplianceMult_Private(AbutCompliance S, const PetscReal x[],
 
   PetscFunctionBegin;
   PetscCall(PetscBLASIntCast(S->n, &rows));
-  PetscCall(PetscBLASIntCast(S->shared ? S->to - S->from : S->n, &columns));
+  PetscCall(PetscBLASIntCast(S->end - S->begin, &columns));
   ld = PetscMax(1, rows);
-  PetscCallBLAS("BLASgemv", BLASgemv_("T", &rows, &columns, &one, S->a, &ld, x, &step, &zero, y + (S->shared ? S->from : 0), &step));
-  if (S->shared) PetscCall(AbutComplianceGather_Private(S, y));
+  PetscCallBLAS("BLASgemv", BLASgemv_("T", &rows, &columns, &one, S->a, &ld, x, &step, &zero, y + S->begin, &step));
+  PetscCall(AbutComplianceGather_Private(S, y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -104,19 +106,17 @@ PetscErrorCode AbutComplianceAdd_Private(AbutCompliance S, PetscInt count, const
 
   PetscFunctionBegin;
   PetscCall(PetscBLASIntCast(S->n, &rows));
-  PetscCall(PetscBLASIntCast(S->shared ? S->to - S->from : S->n, &columns));
+  PetscCall(PetscBLASIntCast(S->end - S->begin, &columns));
   PetscCall(PetscBLASIntCast(count, &k));
   ld = PetscMax(1, rows);
-  PetscCallBLAS("BLASgemm", BLASgemm_("N", "T", &rows, &columns, &k, &one, V, &ld, W + (S->shared ? S->from : 0), &ld, &one, S->a, &ld));
+  PetscCallBLAS("BLASgemm", BLASgemm_("N", "T", &rows, &columns, &k, &one, V, &ld, W + S->begin, &ld, &one, S->a, &ld));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode AbutComplianceGetDiagonal_Private(AbutCompliance S, PetscReal diagonal[])
 {
-  const PetscInt from = S->shared ? S->from : 0, to = S->shared ? S->to : S->n;
-
   PetscFunctionBegin;
-  for (PetscInt i = from; i < to; ++i) diagonal[i] = S->a[(size_t)S->n * (i - from) + i];
-  if (S->shared) PetscCall(AbutComplianceGather_Private(S, diagonal));
+  for (PetscInt i = S->begin; i < S->end; ++i) diagonal[i] = S->a[(size_t)S->n * (i - S->begin) + i];
+  PetscCall(AbutComplianceGather_Private(S, diagonal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

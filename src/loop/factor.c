@@ -46,7 +46,7 @@ static PetscErrorCode AbutFactorDistribute_Private(AbutCompliance S, PetscInt na
   }
   PetscCall(PetscMalloc1((size_t)(before[rank + 1] - before[rank]) * na, &own));
   for (PetscInt j = before[rank]; j < before[rank + 1]; ++j) {
-    const PetscReal *a = S->a + (size_t)S->n * (active[j] - S->from);
+    const PetscReal *a = S->a + (size_t)S->n * (active[j] - S->begin);
 
     for (PetscInt i = 0; i < na; ++i) own[(size_t)na * (j - before[rank]) + i] = a[active[i]];
   }

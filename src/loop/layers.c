@@ -148,7 +148,7 @@ PetscErrorCode AbutInterfaceLayers_Private(AbutInterface f, AbutContactModel mod
   PetscCall(AbutModesCreate_Private(f, model, m));
   for (PetscMPIInt step = 0; step < size; ++step) {
     PetscCall(AbutLayersAdd_Private(f, model, m));
-    if (step + 1 < size) PetscCall(AbutModesPass_Private(f, model, step, m));
+    if (step + 1 < size) PetscCall(AbutModesPass_Private(f, step, m));
   }
   PetscCall(AbutModesDestroy_Private(f, m));
   PetscCall(PetscFree(m));

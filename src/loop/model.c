@@ -198,7 +198,7 @@ PetscErrorCode AbutContactModelEnergy_Private(AbutContactModel model, const Pets
   PetscCall(AbutComplianceMult_Private(model->S, v, Sv));
   for (PetscInt i = 0; i < model->n; ++i) e += v[i] * (Sv[i] + (soft ? soft[i] * v[i] : 0.));
   PetscCall(PetscFree(Sv));
-  PetscCall(AbutComplianceAgree_Private(model->S, 1, &e)); /* it decides whether the loop goes on */
+  PetscCall(AbutComplianceAgree_Private(model->S, 1, MPIU_REAL, &e)); /* it decides whether the loop goes on */
   *energy = PetscMax(0., e);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -9,14 +9,11 @@
 /* The answer of AbutContactModelSolve_Private() of the first rank for all: on it hangs what they do together */
 PetscErrorCode AbutContactModelAgree_Private(AbutContactModel model, PetscReal d[], PetscReal a[], PetscInt *loose, PetscBool *solved)
 {
-  PetscReal said[2] = {(PetscReal)*loose, (PetscReal)*solved};
-
   PetscFunctionBegin;
-  PetscCall(AbutComplianceAgree_Private(model->S, model->n, d));
-  PetscCall(AbutComplianceAgree_Private(model->S, model->m, a));
-  PetscCall(AbutComplianceAgree_Private(model->S, 2, said));
-  *loose  = (PetscInt)said[0];
-  *solved = (PetscBool)(said[1] != 0.);
+  PetscCall(AbutComplianceAgree_Private(model->S, model->n, MPIU_REAL, d));
+  PetscCall(AbutComplianceAgree_Private(model->S, model->m, MPIU_REAL, a));
+  PetscCall(AbutComplianceAgree_Private(model->S, 1, MPIU_INT, loose));
+  PetscCall(AbutComplianceAgree_Private(model->S, 1, MPIU_BOOL, solved));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -92,11 +89,8 @@ static PetscErrorCode AbutContactModelZone_Private(AbutContactModel model, const
   PetscCall(AbutContactModelActive_Private(model, na));
   PetscCall(AbutContactModelBalance_Private(model, na, a, loose));
   if (model->S->shared) { /* the next factors are made together */
-    PetscReal which = (PetscReal)*loose;
-
-    PetscCall(AbutComplianceAgree_Private(model->S, m, a));
-    PetscCall(AbutComplianceAgree_Private(model->S, 1, &which));
-    *loose = (PetscInt)which;
+    PetscCall(AbutComplianceAgree_Private(model->S, m, MPIU_REAL, a));
+    PetscCall(AbutComplianceAgree_Private(model->S, 1, MPIU_INT, loose));
   }
   if (*loose >= 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArrayzero(F, n));

@@ -93,31 +93,22 @@ static void AbutModesBlock_Private(PetscInt all, PetscInt most, PetscMPIInt rank
   *to   = PetscMin(all, (PetscInt)((PetscInt64)most * (rank + 1) / size));
 }
 
-/* A rank's block on side t, without values yet; most: the largest number of modes of a side */
-static PetscErrorCode AbutModesSize_Private(AbutInterface f, AbutContactModel model, PetscInt t, PetscInt most, PetscMPIInt rank,
-                                            AbutModes *m)
+/* Room for the block of a rank on one side, of which all else is known; most: the largest number of modes of a side */
+static PetscErrorCode AbutModesAllocate_Private(PetscInt most, PetscMPIInt rank, PetscMPIInt size, AbutModes *m)
 {
-  const AbutSide *side;
-  PetscMPIInt     size;
-  PetscInt        all, from, to;
+  PetscInt from, to;
 
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)f), &size));
-  PetscCall(AbutModesGetSide_Private(f, t, &side, &all));
-  AbutModesBlock_Private(all, most, rank, size, &from, &to);
-  m->n      = to - from;
-  m->first  = model->first[t / 2];
-  m->rows   = model->normals[t / 2];
-  m->length = 0.;
-  for (PetscInt i = 0; i + 1 < side->n; ++i) m->length += AbutSideElement_Private(side, i);
+  AbutModesBlock_Private(m->all, most, rank, size, &from, &to);
+  m->n = to - from;
   PetscCall(PetscMalloc1((size_t)(m->rows + 1) * m->n, &m->xi));
   m->W = m->xi + m->n;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* From the rank that found them each one gets its block of the modes of a side: xi, and V by columns into own */
-static PetscErrorCode AbutModesDeal_Private(MPI_Comm comm, PetscMPIInt owner, PetscInt all, PetscInt most, const PetscReal xi[],
-                                            const PetscReal V[], AbutModes *m, PetscReal own[])
+static PetscErrorCode AbutModesDeal_Private(MPI_Comm comm, PetscMPIInt owner, PetscInt most, const PetscReal xi[], const PetscReal V[],
+                                            AbutModes *m, PetscReal own[])
 {
   PetscMPIInt  size, *counts, *first;
   MPI_Datatype column;
@@ -128,11 +119,11 @@ static PetscErrorCode AbutModesDeal_Private(MPI_Comm comm, PetscMPIInt owner, Pe
   for (PetscMPIInt r = 0; r < size; ++r) {
     PetscInt from, to;
 
-    AbutModesBlock_Private(all, most, r, size, &from, &to);
+    AbutModesBlock_Private(m->all, most, r, size, &from, &to);
     first[r]  = (PetscMPIInt)from;
     counts[r] = (PetscMPIInt)(to - from);
   }
-  PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)all, MPIU_REAL, &column));
+  PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)m->all, MPIU_REAL, &column));
   PetscCallMPI(MPI_Type_commit(&column));
   PetscCallMPI(MPI_Scatterv(xi, counts, first, MPIU_REAL, m->xi, (PetscMPIInt)m->n, MPIU_REAL, owner, comm));
   PetscCallMPI(MPI_Scatterv(V, counts, first, column, own, (PetscMPIInt)m->n, column, owner, comm));
@@ -142,20 +133,19 @@ static PetscErrorCode AbutModesDeal_Private(MPI_Comm comm, PetscMPIInt owner, Pe
 }
 
 /* The values of the block of this rank: modes as penetrations of their pair's contact nodes */
-static PetscErrorCode AbutModesFill_Private(AbutInterface f, AbutContactModel model, PetscInt t, const PetscReal V[], AbutModes *m)
+static PetscErrorCode AbutModesFill_Private(AbutInterface f, AbutContactModel model, PetscInt t, const AbutSide *side, const PetscReal V[],
+                                            AbutModes *m)
 {
   const PetscInt   pair = t / 2;
-  PetscInt         which, n, all;
-  const AbutSide  *side;
+  PetscInt         which, n;
   const PetscReal *x, *D;
   PetscReal       *shape, *trace, *g;
 
   PetscFunctionBegin;
-  PetscCall(AbutModesGetSide_Private(f, t, &side, &all));
   PetscCall(AbutPairGetPressureNodes(f->pair[pair], &which, &n, &x, &D));
   PetscCall(PetscCalloc3(side->n, &shape, f->offset[2 * pair + 2] - f->offset[2 * pair], &trace, n, &g));
   for (PetscInt k = 0; k < m->n; ++k) {
-    for (PetscInt i = 0, free = 0; i < side->n; ++i) shape[i] = side->fixed[i] ? 0. : V[k * all + free++];
+    for (PetscInt i = 0, free = 0; i < side->n; ++i) shape[i] = side->fixed[i] ? 0. : V[k * m->all + free++];
     PetscCall(AbutPairSetNormalTrace(f->pair[pair], t % 2, shape, trace + f->offset[t] - f->offset[2 * pair]));
     PetscCall(AbutPairComputePenetration(f->pair[pair], trace, trace + f->offset[2 * pair + 1] - f->offset[2 * pair], g));
     for (PetscInt c = 0; c < m->rows; ++c) m->W[k * m->rows + c] = g[model->node[m->first + c]] - model->open[m->first + c];
@@ -186,17 +176,21 @@ static PetscErrorCode AbutModesOfTrace_Private(AbutInterface f, AbutContactModel
 {
   MPI_Comm        comm = PetscObjectComm((PetscObject)f);
   const AbutSide *side;
-  PetscMPIInt     rank;
-  PetscInt        all;
+  PetscMPIInt     rank, size;
   PetscReal      *own;
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  PetscCall(AbutModesGetSide_Private(f, t, &side, &all));
-  PetscCall(AbutModesSize_Private(f, model, t, most, rank, m));
-  PetscCall(PetscMalloc1((size_t)all * m->n, &own));
-  PetscCall(AbutModesDeal_Private(comm, owner, all, most, xi, V, m, own));
-  PetscCall(AbutModesFill_Private(f, model, t, own, m));
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCall(AbutModesGetSide_Private(f, t, &side, &m->all));
+  m->first  = model->first[t / 2];
+  m->rows   = model->normals[t / 2];
+  m->length = 0.;
+  for (PetscInt i = 0; i + 1 < side->n; ++i) m->length += AbutSideElement_Private(side, i);
+  PetscCall(AbutModesAllocate_Private(most, rank, size, m));
+  PetscCall(PetscMalloc1((size_t)m->all * m->n, &own));
+  PetscCall(AbutModesDeal_Private(comm, owner, most, xi, V, m, own));
+  PetscCall(AbutModesFill_Private(f, model, t, side, own, m));
   PetscCall(PetscFree(own));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -232,24 +226,24 @@ PetscErrorCode AbutModesCreate_Private(AbutInterface f, AbutContactModel model, 
 }
 
 /* The blocks here, which a rank before this one made some steps ago, go to the next rank, and those of the rank before take their place */
-PetscErrorCode AbutModesPass_Private(AbutInterface f, AbutContactModel model, PetscMPIInt step, AbutModes m[])
+PetscErrorCode AbutModesPass_Private(AbutInterface f, PetscMPIInt step, AbutModes m[])
 {
   MPI_Comm    comm = PetscObjectComm((PetscObject)f);
   PetscMPIInt rank, size, next, before, tag;
-  PetscInt    most;
+  PetscInt    most = 0;
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   PetscCallMPI(MPI_Comm_size(comm, &size));
   PetscCall(PetscObjectGetNewTag((PetscObject)f, &tag));
-  PetscCall(AbutModesCount_Private(f, &most));
   next   = (rank + 1) % size;
   before = (rank + size - 1) % size;
+  for (PetscInt t = 0; t < 2 * f->npairs; ++t) most = PetscMax(most, m[t].all);
   for (PetscInt t = 0; t < 2 * f->npairs; ++t) {
-    AbutModes there;
+    AbutModes there = m[t];
 
     if (f->bodyof[t] < 0) continue;
-    PetscCall(AbutModesSize_Private(f, model, t, most, (before + size - step) % size, &there));
+    PetscCall(AbutModesAllocate_Private(most, (before + size - step) % size, size, &there));
     PetscCallMPI(MPI_Sendrecv(m[t].xi, (PetscMPIInt)((m[t].rows + 1) * m[t].n), MPIU_REAL, next, tag, there.xi,
                               (PetscMPIInt)((there.rows + 1) * there.n), MPIU_REAL, before, tag, comm, MPI_STATUS_IGNORE));
     PetscCall(PetscFree(m[t].xi));

@@ -22,10 +22,11 @@ typedef struct {
   MPI_Comm    comm;
   PetscMPIInt size, *counts, *first; /* [size], [size+1] columns that each rank computes */
   PetscInt    n, from, to;           /* those of this one */
-  PetscBool   shared;                /* a has these, n*(to-from), and not all */
-  PetscReal  *a;
-  PetscInt    nactive; /* of the last factors */
-  PetscReal  *lapack;  /* room for n*n */
+  PetscBool   shared;                /* it keeps only these, and not all */
+  PetscInt    begin, end;            /* columns that it keeps */
+  PetscReal  *a;                     /* [n*(end-begin)] */
+  PetscInt    nactive;               /* of the last factors */
+  PetscReal  *lapack;                /* room for n*n */
   Mat         scalapack;
 } *AbutCompliance;
 
@@ -65,6 +66,7 @@ typedef struct {
 /* A block of the modes of side t = 2*pair+side: K v = xi^2 D v on its nodes, with the one-dimensional stiffness K, natural ends, lumped
    lengths D and V'DV = I */
 typedef struct {
+  PetscInt   all;   /* modes of the side: nodes whose normal displacement is not prescribed */
   PetscInt   n;     /* of the block; blocks of a rank begin at the same mode on all sides */
   PetscInt   first; /* first contact node of the pair, and how many */
   PetscInt   rows;
@@ -145,7 +147,7 @@ PETSC_EXTERN PetscErrorCode AbutComplianceCreate_Private(MPI_Comm, PetscInt, Pet
 PETSC_EXTERN PetscErrorCode AbutComplianceDestroy_Private(AbutCompliance *);
 PETSC_EXTERN PetscReal     *AbutComplianceGetColumns_Private(AbutCompliance, PetscInt *, PetscInt *);
 PETSC_EXTERN PetscErrorCode AbutComplianceAssemble_Private(AbutCompliance);
-PETSC_INTERN PetscErrorCode AbutComplianceAgree_Private(AbutCompliance, PetscInt, PetscReal[]);
+PETSC_INTERN PetscErrorCode AbutComplianceAgree_Private(AbutCompliance, PetscInt, MPI_Datatype, void *);
 PETSC_EXTERN PetscErrorCode AbutComplianceMult_Private(AbutCompliance, const PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutComplianceAdd_Private(AbutCompliance, PetscInt, const PetscReal[], const PetscReal[]);
 PETSC_EXTERN PetscErrorCode AbutComplianceGetDiagonal_Private(AbutCompliance, PetscReal[]);
@@ -156,7 +158,7 @@ PETSC_INTERN PetscErrorCode AbutComplianceFreeFactor_Private(AbutCompliance);
 /* waves.c */
 PETSC_INTERN PetscErrorCode AbutModesCount_Private(AbutInterface, PetscInt *);
 PETSC_INTERN PetscErrorCode AbutModesCreate_Private(AbutInterface, AbutContactModel, AbutModes[]);
-PETSC_INTERN PetscErrorCode AbutModesPass_Private(AbutInterface, AbutContactModel, PetscMPIInt, AbutModes[]);
+PETSC_INTERN PetscErrorCode AbutModesPass_Private(AbutInterface, PetscMPIInt, AbutModes[]);
 PETSC_INTERN PetscErrorCode AbutModesDestroy_Private(AbutInterface, AbutModes[]);
 
 /* layers.c, model.c, programme.c: the contact model */
