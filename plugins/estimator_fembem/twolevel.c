@@ -181,10 +181,10 @@ PetscErrorCode FembemTwoLevelApply(FembemTwoLevel two, const PetscReal r[], Pets
 
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(two->work, c->s.nt + c->s.nu));
-  for (PetscInt end = 0; end < 2 && c->positive; ++end)
-    for (PetscInt k = 0; k < n; ++k)
-      if (c->from[end][unknown[k]] >= 0) two->work[c->from[end][unknown[k]]] += c->weight[end][unknown[k]] * r[k];
   if (c->positive) {
+    for (PetscInt end = 0; end < 2; ++end)
+      for (PetscInt k = 0; k < n; ++k)
+        if (c->from[end][unknown[k]] >= 0) two->work[c->from[end][unknown[k]]] += c->weight[end][unknown[k]] * r[k];
     PetscCall(FembemDenseSum(two->comm, c->s.nt + c->s.nu, two->work));
     PetscCall(FembemSystemSolve(&c->s, two->work, two->work + c->s.nt));
   }

@@ -130,10 +130,10 @@ class Model:
         for phase in PHASES:
             for name, c in self.coefficients[phase, "work"].items():
                 found[phase, CAUSE[name]] += c * TERMS["work"][name](state)
-            found[phase, "modes"] += MODES * state.m**2 if phase == "Sweeps" else 0.0
             found[phase, "messages"] += latency * sum(self.count(phase, count, state) for count in MESSAGES)
             found[phase, "steps"] += latency * self.count(phase, "steps", state)
             found[phase, "bytes"] += (self.count(phase, "bytes", state) + self.count(phase, "gathered", state)) / bandwidth
+        found["Sweeps", "modes"] = MODES * state.m**2
         return found
 
     def efficiency(self, state, latency, bandwidth):
